@@ -1,0 +1,21 @@
+// What this pipeline simulates. The host sets every constant from the scene's effects; src/gpu/pipeline.rs is the only place
+// that does. The defaults compile everything.
+
+override AMBIENT: bool = true;
+override DIFFUSE: bool = true;
+override SPECULAR: bool = true;
+override SHADOWS: bool = true;
+override REFLECTIONS: bool = true;
+// Primary rays test the image plane and see inner walls.
+override SHELLS: bool = true;
+// Object space differs from world space by more than a translation.
+override ELLIPSOIDS: bool = true;
+
+// Secondary rays meet their own sphere by its analytic other root only.
+override SKIP_SELF: bool = false;
+// The specular term is (N.H)^n instead of (R.V)^n.
+override BLINN: bool = false;
+
+// Loop counts, where they are few enough to be worth a pipeline of their own; 0 reads them from the parameters.
+override SPHERE_COUNT: u32 = 0u;
+override LIGHT_COUNT: u32 = 0u;

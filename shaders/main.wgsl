@@ -1,0 +1,26 @@
+// One workgroup renders one tile.
+
+// The status byte of a pixel.
+const STATUS_FINITE: u32 = 0u;
+const STATUS_NOT_FINITE: u32 = 1u;
+
+fn primary_ray(pixel: vec2<u32>) -> Ray {
+    return ray_from(vec3r(), vec3r(columns[pixel.x], rows[pixel.y], -params.near));
+}
+
+fn packed_pixel(color: vec3r) -> u32 {
+    let level = vec3<u32>(255.0 * clamp(color, vec3r(), vec3r(1.0)) + params.quantize_bias);
+    let finite = is_finite(color.x) && is_finite(color.y) && is_finite(color.z);
+    let status = select(STATUS_NOT_FINITE, STATUS_FINITE, finite);
+    return level.x | (level.y << 8u) | (level.z << 16u) | (status << 24u);
+}
+
+@compute @workgroup_size(8, 8)
+fn render_tiles(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_id) local: vec3<u32>,
+    @builtin(local_invocation_index) index: u32,
+) {
+    let pixel = tiles[params.first_tile + group.x] + local.xy;
+    pixels[group.x * 64u + index] = packed_pixel(trace(primary_ray(pixel)));
+}

@@ -1,0 +1,41 @@
+// A pixel's colour: the primary ray and its chain of reflections; read it beside src/cpu/trace.rs.
+
+// The mirrored view ray, of unit length.
+fn reflection_ray(surface: Surface) -> Ray {
+    let n_dot_v = dot(surface.normal, surface.view);
+    return ray_from(surface.position, surface.normal * (n_dot_v + n_dot_v) - surface.view);
+}
+
+// The unclamped colour seen along the ray.
+fn trace(primary: Ray) -> vec3r {
+    // No shape has this index: a primary ray leaves no sphere.
+    var own = Own(0xffffffffu, false, vec3r());
+    var ray = primary;
+    var hit = nearest_hit(ray, own, primary_range());
+    if !hit.found {
+        return params.background;
+    }
+    var color = vec3r();
+    if !REFLECTIONS {
+        let surface = surface_at(ray, hit);
+        return local_color(surface);
+    }
+    var throughput: real = 1.0;
+    var depth = 0u;
+    // A reflection ray that hits nothing adds black.
+    while hit.found {
+        let surface = surface_at(ray, hit);
+        color += local_color(surface) * throughput;
+
+        let kr = materials[surface.sphere].kr;
+        if depth == params.max_depth || kr == 0.0 {
+            break;
+        }
+        depth += 1u;
+        throughput *= kr;
+        ray = reflection_ray(surface);
+        own = surface.own;
+        hit = nearest_hit(ray, own, secondary_range());
+    }
+    return color;
+}

@@ -1,0 +1,73 @@
+// What the host packs: src/gpu/layout.rs has the same structs under the same names, held together by tests.
+
+struct Params {
+    background: vec3r,
+    // z of the image plane is -near.
+    near: real,
+    ambient: vec3r,
+    // A primary ray's hit counts beyond this.
+    primary_t_min: real,
+    // A shadow or reflection ray's hit counts beyond this.
+    secondary_t_min: real,
+    // Added to 255 c before the fraction is cut off.
+    quantize_bias: real,
+    // Place of this dispatch's first tile in the list.
+    first_tile: u32,
+    sphere_count: u32,
+    light_count: u32,
+    max_depth: u32,
+}
+
+// What the intersection reads of a sphere.
+struct Shape {
+    center: vec3r,
+    // In object space.
+    radius: real,
+    // World to object space.
+    inv_scale: vec3r,
+    // Lowest index of a sphere with this very surface.
+    index: u32,
+}
+
+// What only shading reads of a sphere.
+struct Material {
+    color: vec3r,
+    ka: real,
+    // Object to world space.
+    scale: vec3r,
+    kd: real,
+    ks: real,
+    kr: real,
+    n: real,
+}
+
+struct Light {
+    position: vec3r,
+    intensity: vec3r,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage, read> shapes: array<Shape>;
+@group(0) @binding(2) var<storage, read> materials: array<Material>;
+@group(0) @binding(3) var<storage, read> lights: array<Light>;
+// x of each column and y of each row on the image plane.
+@group(0) @binding(4) var<storage, read> columns: array<real>;
+@group(0) @binding(5) var<storage, read> rows: array<real>;
+// Top-left pixel of each tile that a sphere may cover.
+@group(0) @binding(6) var<storage, read> tiles: array<vec2<u32>>;
+// One pixel of this dispatch each, tile by tile: red, green, blue in the low bytes, status in the high one.
+@group(0) @binding(7) var<storage, read_write> pixels: array<u32>;
+
+fn sphere_count() -> u32 {
+    if SPHERE_COUNT > 0u {
+        return SPHERE_COUNT;
+    }
+    return params.sphere_count;
+}
+
+fn light_count() -> u32 {
+    if LIGHT_COUNT > 0u {
+        return LIGHT_COUNT;
+    }
+    return params.light_count;
+}

@@ -1,0 +1,143 @@
+//! Rays against spheres; read it beside `shaders/intersect.wgsl`.
+//!
+//! The quadratic |c'|²τ² + 2(S'·c')τ + |S'|² − r² = 0 in its numerically sound form: the discriminant from the distance
+//! of the ray to the centre, the roots as a stable pair (Haines, Günther, Akenine-Möller, "Precision Improvements for
+//! Ray/Sphere Intersection", Ray Tracing Gems, chapter 7).
+
+use super::real::Real;
+use super::scene::{Shape, World};
+use super::vec3::Vec3;
+
+/// origin + t·direction; the direction need not be normalised.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Ray<T> {
+    pub origin: Vec3<T>,
+    pub direction: Vec3<T>,
+}
+
+/// The sphere that a secondary ray leaves.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Own<T> {
+    /// Shape index of the sphere.
+    pub shape: u32,
+    /// Whether the ray starts on the inner wall.
+    pub inside: bool,
+    /// Start of the ray in the sphere's object space.
+    pub local: Vec3<T>,
+}
+
+/// The nearest accepted intersection.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Hit<T> {
+    pub t: T,
+    pub sphere: usize,
+    /// Whether it is the greater root: the sphere is seen from inside.
+    pub inside: bool,
+}
+
+/// A ray's closest approach to a sphere's centre, in the sphere's object space.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Approach<T> {
+    /// S': origin minus centre.
+    pub origin: Vec3<T>,
+    /// c'.
+    pub direction: Vec3<T>,
+    /// c'·c'.
+    pub a: T,
+    /// −S'·c'.
+    pub b: T,
+    /// From the centre to the closest point of the line.
+    pub perpendicular: Vec3<T>,
+    /// radius² − |perpendicular|²: negative where the line misses.
+    pub discriminant: T,
+}
+
+pub(crate) fn approach<T: Real>(ray: &Ray<T>, shape: &Shape<T>) -> Approach<T> {
+    let origin = (ray.origin - shape.center) * shape.inv_scale;
+    let direction = ray.direction * shape.inv_scale;
+    let a = direction.dot(direction);
+    let b = -origin.dot(direction);
+    // An error of b/a moves the point along the ray, which changes its distance to second order only.
+    let perpendicular = origin + direction * (b * (T::ONE / a));
+    let discriminant = shape.radius * shape.radius - perpendicular.dot(perpendicular);
+    Approach { origin, direction, a, b, perpendicular, discriminant }
+}
+
+/// Both roots, lesser first; none where the line misses.
+pub(crate) fn roots<T: Real>(at: &Approach<T>, radius: T) -> Option<(T, T)> {
+    // Ordered comparison: a NaN is never a hit.
+    if !(at.discriminant >= T::ZERO) {
+        return None;
+    }
+    let root = (at.a * at.discriminant).sqrt();
+    let c = at.origin.dot(at.origin) - radius * radius;
+    if at.b >= T::ZERO {
+        let q = at.b + root;
+        Some((c / q, q / at.a))
+    } else {
+        let q = at.b - root;
+        Some((q / at.a, c / q))
+    }
+}
+
+/// Where a ray that starts on the inner wall leaves its own sphere: C = 0, so τ = −2B/A and no quadratic is needed.
+pub(crate) fn exit_root<T: Real>(own: &Own<T>, direction: Vec3<T>, shape: &Shape<T>) -> T {
+    let direction = direction * shape.inv_scale;
+    let projection = -own.local.dot(direction);
+    (projection + projection) / direction.dot(direction)
+}
+
+/// Which roots count.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Range<T> {
+    /// A root counts beyond this.
+    pub t_min: T,
+    /// A root counts before this.
+    pub t_max: T,
+    /// Whether the greater root counts where the lesser is too near.
+    pub greater: bool,
+}
+
+/// The least root of one sphere that counts, and whether it is the greater one.
+pub(crate) fn accepted_root<T: Real>(
+    ray: &Ray<T>,
+    shape: &Shape<T>,
+    own: Option<&Own<T>>,
+    range: &Range<T>,
+) -> Option<(T, bool)> {
+    let Range { t_min, t_max, .. } = *range;
+    if let Some(own) = own.filter(|own| own.shape == shape.index) {
+        // The outside of a convex surface is never met again.
+        let t = exit_root(own, ray.direction, shape);
+        return (own.inside && t > t_min && t < t_max).then_some((t, true));
+    }
+    let (lesser, greater) = roots(&approach(ray, shape), shape.radius)?;
+    if lesser > t_min {
+        (lesser < t_max).then_some((lesser, false))
+    } else {
+        (range.greater && greater > t_min && greater < t_max).then_some((greater, true))
+    }
+}
+
+/// The nearest intersection in `range`; of equal ones the lowest index.
+pub(crate) fn nearest_hit<T: Real>(
+    world: &World<T>,
+    ray: &Ray<T>,
+    own: Option<&Own<T>>,
+    mut range: Range<T>,
+) -> Option<Hit<T>> {
+    let mut nearest: Option<Hit<T>> = None;
+    for (sphere, shape) in world.shapes.iter().enumerate() {
+        if let Some((t, inside)) = accepted_root(ray, shape, own, &range) {
+            nearest = Some(Hit { t, sphere, inside });
+            range.t_max = t;
+        }
+    }
+    nearest
+}
+
+/// Whether any sphere stands between the ray's origin and t = 1.
+pub(crate) fn any_hit<T: Real>(world: &World<T>, ray: &Ray<T>, own: Option<&Own<T>>) -> bool {
+    let range = Range { t_max: T::ONE, ..world.secondary };
+    world.shapes.iter().any(|shape| accepted_root(ray, shape, own, &range).is_some())
+}

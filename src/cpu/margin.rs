@@ -1,0 +1,279 @@
+//! How near a pixel's decisions are to falling the other way, to first order.
+//!
+//! A renderer with unit roundoff u follows a ray that lies within a thin cone around the exact one. The cone's width is
+//! carried along the path (position error, direction error, growing at grazing angles and on curved mirrors); at every
+//! decision the reference asks whether the cone contains the other answer, and in the end which levels the colour can take.
+
+use glam::DVec3;
+use serde::Serialize;
+
+use super::intersect::{Approach, Hit, Own, Range, Ray, approach, exit_root, roots};
+use super::render::Reference;
+use super::scene::{PointLight, World};
+use super::shade::Surface;
+use super::trace::trace;
+use super::vec3::Vec3;
+use super::witness::Witness;
+
+/// Rounding errors that a value gathers before it is compared, in units of u: the longest chain of operations between the
+/// inputs and a decision (ray into object space, closest approach, discriminant) has about this many steps.
+const STEPS: f64 = 8.0;
+
+/// A decision that a ray within the cone takes differently.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Decision {
+    /// A sphere is just hit or just missed.
+    Silhouette,
+    /// Two surfaces are hit at nearly the same distance.
+    Tie,
+    /// A hit lies just before or behind the image plane.
+    NearPlane,
+    /// A hit lies just before or behind the least distance of a secondary ray.
+    Epsilon,
+    /// A blocker is just hit or just missed, or ends just at the light.
+    ShadowEdge,
+    /// A light stands just above or below the tangent plane.
+    Terminator,
+    /// The colour lies just above or below a quantisation step.
+    QuantisationStep,
+}
+
+impl Decision {
+    /// The decision in words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Silhouette => "silhouette",
+            Self::Tie => "two surfaces at one distance",
+            Self::NearPlane => "near plane",
+            Self::Epsilon => "secondary epsilon",
+            Self::ShadowEdge => "shadow edge",
+            Self::Terminator => "terminator",
+            Self::QuantisationStep => "quantisation step",
+        }
+    }
+}
+
+/// What the reference says of a pixel of another renderer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// The levels are the reference's.
+    Same,
+    /// They differ, and this is the first decision on the path within its margin.
+    Explained(Decision),
+    /// They differ, and no decision comes near enough.
+    Unexplained,
+}
+
+/// Judges the pixels of a renderer whose scalar has a given unit roundoff.
+#[derive(Debug, Clone, Copy)]
+pub struct Judge {
+    unit_roundoff: f64,
+}
+
+impl Judge {
+    /// For a renderer in `f32`: u = 2⁻²³.
+    pub const SINGLE: Self = Self { unit_roundoff: 1.0 / (1u64 << 23) as f64 };
+    /// For a renderer in `f64`: u = 2⁻⁵².
+    pub const DOUBLE: Self = Self { unit_roundoff: 1.0 / (1u64 << 52) as f64 };
+
+    /// The verdict on `level`, another renderer's 8-bit value of pixel (column `i`, row `j`).
+    pub fn pixel(&self, reference: &Reference<f64>, i: u32, j: u32, level: [u8; 3]) -> Verdict {
+        let mut cone = Cone::new(self.unit_roundoff);
+        let color = trace(&reference.world, reference.primary_ray(i, j), &mut cone).to_f64();
+        if reference.quantize.levels(color) == level {
+            return Verdict::Same;
+        }
+        if let Some(decision) = cone.decision {
+            return Verdict::Explained(decision);
+        }
+        let error = cone.color + color.abs() * (STEPS * self.unit_roundoff);
+        let low = reference.quantize.levels(color - error);
+        let high = reference.quantize.levels(color + error);
+        if (0..3).all(|c| (low[c]..=high[c]).contains(&level[c])) {
+            Verdict::Explained(Decision::QuantisationStep)
+        } else {
+            Verdict::Unexplained
+        }
+    }
+}
+
+/// The error cone around a traced ray; all errors are absolute, to first order.
+#[derive(Debug)]
+struct Cone {
+    u: f64,
+    /// Error of the ray's origin, in world units.
+    position: f64,
+    /// Error of the ray's direction, as a fraction of its length.
+    direction: f64,
+    /// Error of the unit normal of the surface last hit.
+    normal: f64,
+    /// Error of the colour gathered so far.
+    color: DVec3,
+    /// Weight of what is gathered next.
+    throughput: f64,
+    /// N·L of the light in hand and its error.
+    light: (f64, f64),
+    bounces: u32,
+    decision: Option<Decision>,
+}
+
+impl Cone {
+    fn new(u: f64) -> Self {
+        Self {
+            u,
+            position: 0.0,
+            direction: u,
+            normal: 0.0,
+            color: DVec3::ZERO,
+            throughput: 1.0,
+            light: (0.0, 0.0),
+            bounces: 0,
+            decision: None,
+        }
+    }
+
+    fn note(&mut self, decision: Decision) {
+        self.decision.get_or_insert(decision);
+    }
+
+    /// Width of the cone at `t`, in world units, with the rounding of the way into object space.
+    fn width(&self, world: &World<f64>, ray: &Ray<f64>, sphere: usize, t: f64) -> f64 {
+        let magnitude = length(ray.origin) + length(world.shapes[sphere].center) + t.abs() * length(ray.direction);
+        self.position + t.abs() * length(ray.direction) * self.direction + STEPS * self.u * magnitude
+    }
+
+    /// Error of a root t: the width of the cone, stretched by the angle at which the ray meets the surface.
+    fn root_error(&self, world: &World<f64>, ray: &Ray<f64>, sphere: usize, at: &Approach<f64>, t: f64) -> f64 {
+        let shape = &world.shapes[sphere];
+        let cosine = (at.discriminant.max(0.0)).sqrt() / shape.radius;
+        let stretch = largest(shape.inv_scale) / at.a.sqrt() / cosine.max(f64::MIN_POSITIVE);
+        self.width(world, ray, sphere, t) * stretch + STEPS * self.u * t.abs()
+    }
+
+    /// Whether a ray of the cone answers differently whether the line meets `sphere`.
+    fn at_silhouette(&self, world: &World<f64>, ray: &Ray<f64>, sphere: usize, at: &Approach<f64>) -> bool {
+        let shape = &world.shapes[sphere];
+        let width = self.width(world, ray, sphere, at.b / at.a) * largest(shape.inv_scale);
+        let distance = at.perpendicular.dot(at.perpendicular).sqrt();
+        (distance - shape.radius).abs() <= width
+    }
+
+    /// Looks for decisions of the search over (`t_min`, `t_end`): spheres just touched, roots just at an end.
+    fn watch_roots(
+        &mut self,
+        world: &World<f64>,
+        ray: &Ray<f64>,
+        own: Option<&Own<f64>>,
+        (t_min, t_end): (f64, f64),
+        hit: Option<&Hit<f64>>,
+        [touch, at_min, at_end]: [Decision; 3],
+    ) {
+        for (sphere, shape) in world.shapes.iter().enumerate() {
+            let is_hit = hit.is_some_and(|hit| hit.sphere == sphere);
+            if let Some(own) = own.filter(|own| own.shape == shape.index) {
+                let t = exit_root(own, ray.direction, shape);
+                if own.inside && !is_hit && (t - t_end).abs() <= self.width(world, ray, sphere, t) / length(ray.direction)
+                {
+                    self.note(at_end);
+                }
+                continue;
+            }
+            let at = approach(ray, shape);
+            let closest = at.b / at.a;
+            let reach = self.root_error(world, ray, sphere, &at, closest).min(t_end.abs());
+            if self.at_silhouette(world, ray, sphere, &at) && closest > t_min - reach && closest < t_end + reach {
+                self.note(touch);
+            }
+            let Some((lesser, greater)) = roots(&at, shape.radius) else {
+                continue;
+            };
+            for t in [lesser, greater] {
+                let error = self.root_error(world, ray, sphere, &at, t);
+                if (t - t_min).abs() <= error {
+                    self.note(at_min);
+                }
+                let hit_error = if is_hit { f64::NEG_INFINITY } else { error };
+                if (t - t_end).abs() <= hit_error {
+                    self.note(at_end);
+                }
+            }
+        }
+    }
+}
+
+impl Witness<f64> for Cone {
+    fn nearest(
+        &mut self,
+        world: &World<f64>,
+        ray: &Ray<f64>,
+        own: Option<&Own<f64>>,
+        range: &Range<f64>,
+        hit: Option<&Hit<f64>>,
+    ) {
+        let t_end = hit.map_or(f64::MAX, |hit| hit.t);
+        let at_min = if self.bounces == 0 { Decision::NearPlane } else { Decision::Epsilon };
+        self.watch_roots(world, ray, own, (range.t_min, t_end), hit, [Decision::Silhouette, at_min, Decision::Tie]);
+    }
+
+    fn surface(&mut self, world: &World<f64>, ray: &Ray<f64>, hit: &Hit<f64>, surface: &Surface<f64>) {
+        let shape = &world.shapes[hit.sphere];
+        let at = approach(ray, shape);
+        self.position = self.root_error(world, ray, hit.sphere, &at, hit.t) * length(ray.direction)
+            + STEPS * self.u * length(surface.position);
+        // The greatest curvature of an ellipsoid is its longest semi-axis over the square of its shortest.
+        let shortest = shape.radius / largest(shape.inv_scale);
+        let longest = largest(world.materials[hit.sphere].scale) * shape.radius;
+        self.normal = self.position * longest / (shortest * shortest) + STEPS * self.u;
+    }
+
+    fn lit(&mut self, _world: &World<f64>, surface: &Surface<f64>, light: &PointLight<f64>, n_dot_l: f64) {
+        let distance = length(light.position - surface.position);
+        let error = self.normal
+            + (self.position + self.u * length(light.position)) / distance.max(f64::MIN_POSITIVE)
+            + STEPS * self.u;
+        self.light = (n_dot_l, error);
+        if n_dot_l.abs() <= error {
+            self.note(Decision::Terminator);
+        }
+    }
+
+    fn shadow(&mut self, world: &World<f64>, ray: &Ray<f64>, own: Option<&Own<f64>>) {
+        let shadow = [Decision::ShadowEdge; 3];
+        let direction = self.direction;
+        self.direction = self.light.1;
+        self.watch_roots(world, ray, own, (world.secondary.t_min, 1.0), None, shadow);
+        self.direction = direction;
+    }
+
+    fn shaded(&mut self, world: &World<f64>, surface: &Surface<f64>, light: &PointLight<f64>, specular: f64) {
+        let material = &world.materials[surface.sphere];
+        let (_, light_error) = self.light;
+        // d(xⁿ) = n·xⁿ·dx/x with x the cosine of the half or the reflected angle.
+        let power = specular / material.ks.abs().max(f64::MIN_POSITIVE);
+        let cosine = if material.n > 0.0 { power.powf(1.0 / material.n) } else { 1.0 };
+        let angle_error = 2.0 * self.normal + light_error + self.direction;
+        // cos changes by sin·dα + ½dα².
+        let cosine_error = (1.0 - cosine * cosine).max(0.0).sqrt() * angle_error + angle_error * angle_error;
+        let specular_error = material.ks.abs() * power * (material.n * cosine_error / cosine.max(1e-300)).min(1.0)
+            + STEPS * self.u * specular.abs();
+        let diffuse_error = material.kd.abs() * light_error;
+        let intensity = light.intensity.to_f64().abs();
+        let color = material.color.to_f64().abs();
+        self.color += (intensity * color * diffuse_error + intensity * specular_error) * self.throughput.abs();
+    }
+
+    fn reflected(&mut self, throughput: f64) {
+        self.throughput = throughput;
+        self.direction += 2.0 * self.normal;
+        self.bounces += 1;
+    }
+}
+
+fn length(v: Vec3<f64>) -> f64 {
+    v.dot(v).sqrt()
+}
+
+fn largest(v: Vec3<f64>) -> f64 {
+    v.x.max(v.y).max(v.z)
+}

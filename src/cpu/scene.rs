@@ -1,0 +1,118 @@
+//! The scene in the scalar of the reference.
+
+use super::intersect::Range;
+use super::real::Real;
+use super::vec3::Vec3;
+use crate::camera::NEAR_T_MIN;
+use crate::effects::{Effect, EffectSet, Effects};
+use crate::geometry::{Ellipsoid, ellipsoids, shape_indices};
+use crate::scene::{Light, Scene, Sphere};
+use crate::settings::{Secondary, Settings, Specular};
+
+/// One sphere: what the intersection reads.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Shape<T> {
+    /// Centre in world space.
+    pub center: Vec3<T>,
+    /// World to object space.
+    pub inv_scale: Vec3<T>,
+    /// Radius in object space.
+    pub radius: T,
+    /// Lowest index of a sphere with this very surface.
+    pub index: u32,
+}
+
+/// One sphere: what only shading reads.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Material<T> {
+    /// Object to world space.
+    pub scale: Vec3<T>,
+    pub color: Vec3<T>,
+    pub ka: T,
+    pub kd: T,
+    pub ks: T,
+    pub kr: T,
+    pub n: T,
+}
+
+/// One point light.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PointLight<T> {
+    pub position: Vec3<T>,
+    pub intensity: Vec3<T>,
+}
+
+/// Everything that tracing reads, rounded once to `T`.
+#[derive(Debug, Clone)]
+pub(crate) struct World<T> {
+    pub shapes: Vec<Shape<T>>,
+    pub materials: Vec<Material<T>>,
+    pub lights: Vec<PointLight<T>>,
+    pub ambient: Vec3<T>,
+    pub background: Vec3<T>,
+    /// The roots that count along a primary ray.
+    pub primary: Range<T>,
+    /// The roots that count along a shadow or reflection ray.
+    pub secondary: Range<T>,
+    /// Whether the own sphere counts by its analytic other root only.
+    pub skip_self: bool,
+    pub shadows: bool,
+    pub specular: Specular,
+    pub max_depth: u32,
+}
+
+impl<T: Real> World<T> {
+    pub(crate) fn new(scene: &Scene, settings: &Settings, effects: &Effects) -> Self {
+        let on = |effect| effects.set.has(effect);
+        let ellipsoids = ellipsoids(scene, on(Effect::Ellipsoids));
+        let indices = match settings.secondary {
+            Secondary::SkipSelf => shape_indices(&ellipsoids),
+            Secondary::Epsilon(_) => Vec::new(),
+        };
+        let shape = |(i, e): (usize, &Ellipsoid)| Shape {
+            center: Vec3::from_f64(e.center),
+            inv_scale: Vec3::from_f64(e.inv_scale),
+            radius: T::from_f64(e.radius),
+            index: indices.get(i).copied().unwrap_or(i as u32),
+        };
+        let secondary_t_min = match settings.secondary {
+            Secondary::Epsilon(epsilon) => epsilon,
+            Secondary::SkipSelf => 0.0,
+        };
+        let range = |t_min, greater| Range { t_min: T::from_f64(t_min), t_max: T::FAR, greater };
+        Self {
+            shapes: ellipsoids.iter().enumerate().map(shape).collect(),
+            materials: scene.spheres.iter().zip(&ellipsoids).map(|(s, e)| Material::new(s, e, effects.set)).collect(),
+            lights: scene.lights.iter().map(PointLight::new).collect(),
+            ambient: Vec3::from_f64(scene.ambient),
+            background: Vec3::from_f64(scene.background),
+            primary: if on(Effect::Shells) { range(NEAR_T_MIN, true) } else { range(0.0, false) },
+            secondary: range(secondary_t_min, true),
+            skip_self: settings.secondary == Secondary::SkipSelf,
+            shadows: on(Effect::Shadows),
+            specular: settings.specular,
+            max_depth: effects.depth,
+        }
+    }
+}
+
+impl<T: Real> Material<T> {
+    fn new(sphere: &Sphere, ellipsoid: &Ellipsoid, effects: EffectSet) -> Self {
+        let term = |effect, coefficient| T::from_f64(if effects.has(effect) { coefficient } else { 0.0 });
+        Self {
+            scale: Vec3::from_f64(ellipsoid.scale),
+            color: Vec3::from_f64(sphere.color),
+            ka: term(Effect::Ambient, sphere.ka),
+            kd: term(Effect::Diffuse, sphere.kd),
+            ks: term(Effect::Specular, sphere.ks),
+            kr: T::from_f64(sphere.kr),
+            n: T::from_f64(sphere.n),
+        }
+    }
+}
+
+impl<T: Real> PointLight<T> {
+    fn new(light: &Light) -> Self {
+        Self { position: Vec3::from_f64(light.position), intensity: Vec3::from_f64(light.intensity) }
+    }
+}

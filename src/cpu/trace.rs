@@ -1,0 +1,46 @@
+//! A pixel's colour: the primary ray and its chain of reflections; read it beside `shaders/trace.wgsl`.
+
+use super::intersect::{Ray, nearest_hit};
+use super::real::Real;
+use super::scene::World;
+use super::shade::{Surface, local_color, surface_at};
+use super::vec3::Vec3;
+use super::witness::Witness;
+
+/// The unclamped colour seen along `primary`.
+pub(crate) fn trace<T: Real, W: Witness<T>>(world: &World<T>, primary: Ray<T>, witness: &mut W) -> Vec3<T> {
+    let mut ray = primary;
+    let mut hit = nearest_hit(world, &ray, None, world.primary);
+    witness.nearest(world, &ray, None, &world.primary, hit.as_ref());
+    if hit.is_none() {
+        return world.background;
+    }
+    let mut color = Vec3::ZERO;
+    let mut throughput = T::ONE;
+    let mut depth = 0;
+    // A reflection ray that hits nothing adds black.
+    while let Some(found) = hit {
+        let surface = surface_at(world, &ray, &found);
+        witness.surface(world, &ray, &found, &surface);
+        color += local_color(world, &surface, witness) * throughput;
+
+        let kr = world.materials[surface.sphere].kr;
+        if depth == world.max_depth || kr == T::ZERO {
+            break;
+        }
+        depth += 1;
+        throughput *= kr;
+        ray = reflection_ray(&surface);
+        let own = world.skip_self.then_some(&surface.own);
+        hit = nearest_hit(world, &ray, own, world.secondary);
+        witness.reflected(throughput);
+        witness.nearest(world, &ray, own, &world.secondary, hit.as_ref());
+    }
+    color
+}
+
+/// The mirrored view ray, of unit length.
+pub(crate) fn reflection_ray<T: Real>(surface: &Surface<T>) -> Ray<T> {
+    let n_dot_v = surface.normal.dot(surface.view);
+    Ray { origin: surface.position, direction: surface.normal * (n_dot_v + n_dot_v) - surface.view }
+}

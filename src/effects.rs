@@ -1,0 +1,442 @@
+//! What a scene calls for: the one place that decides which code a renderer needs, and says why.
+//!
+//! An effect may be off only where the picture is the same, byte for byte, with it on. Every geometric test here is
+//! conservative: in doubt the effect is on.
+
+use std::fmt;
+use std::str::FromStr;
+
+use glam::DVec3;
+use serde::{Serialize, Serializer};
+
+use crate::scene::{Light, Scene, Sphere};
+use crate::settings::{Secondary, Settings};
+
+/// Something a renderer can simulate or leave out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Effect {
+    /// Ka·Ia·O.
+    Ambient,
+    /// Kd·Ip·(N·L)·O.
+    Diffuse,
+    /// Ks·Ip·(R·V)ⁿ.
+    Specular,
+    /// Shadow rays.
+    Shadows,
+    /// Reflection rays.
+    Reflections,
+    /// Primary rays test the image plane and see inner walls.
+    Shells,
+    /// Object space differs from world space by more than a translation.
+    Ellipsoids,
+}
+
+impl Effect {
+    /// All effects, in the order of the tables.
+    pub const ALL: [Self; 7] = [
+        Self::Ambient,
+        Self::Diffuse,
+        Self::Specular,
+        Self::Shadows,
+        Self::Reflections,
+        Self::Shells,
+        Self::Ellipsoids,
+    ];
+
+    /// The name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ambient => "ambient",
+            Self::Diffuse => "diffuse",
+            Self::Specular => "specular",
+            Self::Shadows => "shadows",
+            Self::Reflections => "reflections",
+            Self::Shells => "shells",
+            Self::Ellipsoids => "ellipsoids",
+        }
+    }
+
+    fn bit(self) -> u8 {
+        1 << self as u8
+    }
+}
+
+impl fmt::Display for Effect {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// A set of effects.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct EffectSet(u8);
+
+impl EffectSet {
+    /// No effect.
+    pub const NONE: Self = Self(0);
+    /// Every effect.
+    pub const ALL: Self = Self((1 << Effect::ALL.len()) - 1);
+
+    /// Whether `effect` is in the set.
+    pub fn has(self, effect: Effect) -> bool {
+        self.0 & effect.bit() != 0
+    }
+
+    /// The set with `effect` in it or not.
+    #[must_use]
+    pub fn with(self, effect: Effect, on: bool) -> Self {
+        if on { Self(self.0 | effect.bit()) } else { Self(self.0 & !effect.bit()) }
+    }
+
+    /// The effects in the set.
+    pub fn iter(self) -> impl Iterator<Item = Effect> {
+        Effect::ALL.into_iter().filter(move |&effect| self.has(effect))
+    }
+
+    /// Every possible set.
+    pub fn every() -> impl Iterator<Item = Self> {
+        (0..=Self::ALL.0).map(Self)
+    }
+}
+
+impl FromIterator<Effect> for EffectSet {
+    fn from_iter<I: IntoIterator<Item = Effect>>(effects: I) -> Self {
+        effects.into_iter().fold(Self::NONE, |set, effect| set.with(effect, true))
+    }
+}
+
+impl Serialize for EffectSet {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.iter())
+    }
+}
+
+impl fmt::Display for EffectSet {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if *self == Self::NONE {
+            return f.write_str("none");
+        }
+        let names: Vec<_> = self.iter().map(Effect::name).collect();
+        f.write_str(&names.join(","))
+    }
+}
+
+/// What the user asks for: `auto`, `all`, `none`, a plain list (exactly those), or a list of `+name` and `-name` (what
+/// the scene calls for, with these switched on or off).
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub enum Request {
+    /// What the scene calls for.
+    #[default]
+    Auto,
+    /// Exactly this set.
+    Exactly(EffectSet),
+    /// What the scene calls for, changed.
+    Changed(Vec<(Effect, bool)>),
+}
+
+impl FromStr for Request {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "auto" => return Ok(Self::Auto),
+            "all" => return Ok(Self::Exactly(EffectSet::ALL)),
+            "none" => return Ok(Self::Exactly(EffectSet::NONE)),
+            _ => {}
+        }
+        let mut plain = Vec::new();
+        let mut changes = Vec::new();
+        for word in text.split(',').map(str::trim) {
+            match word.split_at_checked(1) {
+                Some(("+", name)) => changes.push((effect_named(name)?, true)),
+                Some(("-", name)) => changes.push((effect_named(name)?, false)),
+                _ => plain.push(effect_named(word)?),
+            }
+        }
+        match (plain.is_empty(), changes.is_empty()) {
+            (true, _) => Ok(Self::Changed(changes)),
+            (_, true) => Ok(Self::Exactly(plain.into_iter().collect())),
+            _ => Err("either plain names (exactly those effects) or +name and -name (changes), not both".into()),
+        }
+    }
+}
+
+fn effect_named(name: &str) -> Result<Effect, String> {
+    Effect::ALL.into_iter().find(|effect| effect.name() == name).ok_or_else(|| {
+        let names: Vec<_> = Effect::ALL.into_iter().map(Effect::name).collect();
+        format!("no effect is called '{name}'; there are auto, all, none and a list of {}", names.join(", "))
+    })
+}
+
+/// One row of the table that explains the effects.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Row {
+    /// The effect.
+    pub effect: Effect,
+    /// Whether it is simulated.
+    pub on: bool,
+    /// Why, in words.
+    pub reason: String,
+}
+
+/// The effects that are simulated, each with its reason.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Effects {
+    /// The effects that are on.
+    pub set: EffectSet,
+    /// Greatest number of reflection bounces that can matter; 0 where reflections are off.
+    pub depth: u32,
+    /// One row for each effect.
+    pub rows: Vec<Row>,
+}
+
+impl Effects {
+    /// What `scene` calls for under `settings`.
+    pub fn of(scene: &Scene, settings: &Settings) -> Self {
+        let needs = Needs::new(scene, settings);
+        let (depth, reflections) = needs.reflections();
+        let mut findings = vec![
+            (Effect::Ambient, needs.ambient()),
+            (Effect::Diffuse, needs.diffuse()),
+            (Effect::Specular, needs.specular()),
+        ];
+        let lit = findings[1].1.is_ok() || findings[2].1.is_ok();
+        findings.push((Effect::Shadows, if lit { needs.shadows() } else { Err("no surface is lit by a light".into()) }));
+        findings.push((Effect::Reflections, reflections));
+        findings.push((Effect::Shells, needs.shells()));
+        findings.push((Effect::Ellipsoids, needs.ellipsoids()));
+        let rows: Vec<_> = findings
+            .into_iter()
+            .map(|(effect, finding)| Row { effect, on: finding.is_ok(), reason: finding.unwrap_or_else(|why| why) })
+            .collect();
+        Self { set: rows.iter().filter(|row| row.on).map(|row| row.effect).collect(), depth, rows }
+    }
+
+    /// What `request` makes of what `scene` calls for.
+    pub fn requested(scene: &Scene, settings: &Settings, request: &Request) -> Self {
+        let mut effects = Self::of(scene, settings);
+        let set = match request {
+            Request::Auto => return effects,
+            Request::Exactly(set) => *set,
+            Request::Changed(changes) => {
+                changes.iter().fold(effects.set, |set, &(effect, on)| set.with(effect, on))
+            }
+        };
+        for row in &mut effects.rows {
+            let on = set.has(row.effect);
+            if on != row.on {
+                row.reason = format!("forced {}; the scene: {}", if on { "on" } else { "off" }, row.reason);
+                row.on = on;
+            }
+        }
+        effects.set = set;
+        // Forcing means running the code in full, not the depth that is known to suffice.
+        let forced = *request == Request::Exactly(EffectSet::ALL);
+        effects.depth = match (set.has(Effect::Reflections), effects.depth) {
+            (false, _) => 0,
+            (true, 0) => settings.max_depth,
+            (true, _) if forced => settings.max_depth,
+            (true, depth) => depth,
+        };
+        effects
+    }
+}
+
+/// Beyond this many pairs of a light and a sphere the search for blockers is not worth its time.
+const MAX_SHADOW_PAIRS: usize = 4096;
+/// Spheres within this range of semi-axes need no rescaling to keep f32 squares in range.
+const COMMON_SIZES: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
+
+/// Yes or no, with the reason.
+type Finding = Result<String, String>;
+
+/// What the rules look at.
+struct Needs<'a> {
+    scene: &'a Scene,
+    settings: &'a Settings,
+    /// Whether a primary ray may see the inner wall of some sphere, by index.
+    first_cut: Option<usize>,
+}
+
+impl<'a> Needs<'a> {
+    fn new(scene: &'a Scene, settings: &'a Settings) -> Self {
+        let first_cut = scene.spheres.iter().position(|sphere| !beyond_image_plane(scene, sphere));
+        Self { scene, settings, first_cut }
+    }
+
+    fn name(&self, index: usize) -> String {
+        format!("sphere '{}'", self.scene.sphere_names.get(index))
+    }
+
+    /// The first sphere with the property, for a reason in words.
+    fn first(&self, property: impl Fn(&Sphere) -> bool) -> Option<String> {
+        self.scene.spheres.iter().position(property).map(|index| self.name(index))
+    }
+
+    fn ambient(&self) -> Finding {
+        let light = self.scene.ambient;
+        if light == DVec3::ZERO {
+            return Err("AMBIENT is 0".into());
+        }
+        match self.first(|s| s.ka != 0.0 && s.color * light != DVec3::ZERO) {
+            Some(name) => Ok(format!("{name} has Ka > 0")),
+            None => Err("no sphere has a Ka and a colour that AMBIENT shows".into()),
+        }
+    }
+
+    /// The first lit sphere of those with the property.
+    fn lit_by_lights(&self, coefficient: &str, property: impl Fn(&Sphere, &Light) -> bool) -> Finding {
+        if self.scene.lights.is_empty() {
+            return Err("no lights".into());
+        }
+        let useful: Vec<_> = self.scene.lights.iter().filter(|l| l.intensity != DVec3::ZERO).collect();
+        if useful.is_empty() {
+            return Err("every light has intensity 0".into());
+        }
+        match self.first(|s| useful.iter().any(|light| property(s, light))) {
+            Some(name) => Ok(format!("{name} has {coefficient} > 0")),
+            None => Err(format!("no sphere has a {coefficient} that the lights show")),
+        }
+    }
+
+    fn diffuse(&self) -> Finding {
+        self.lit_by_lights("Kd", |s, light| s.kd != 0.0 && s.color * light.intensity != DVec3::ZERO)
+    }
+
+    fn specular(&self) -> Finding {
+        self.lit_by_lights("Ks", |s, _| s.ks != 0.0)
+    }
+
+    /// Whether some sphere can stand between a light and a point that it lights.
+    fn shadows(&self) -> Finding {
+        let Scene { spheres, lights, .. } = self.scene;
+        if let Some(index) = self.first_cut.filter(|_| spheres.len() == 1) {
+            return Ok(format!("{} may be seen from inside, where it shadows itself", self.name(index)));
+        }
+        if spheres.len() * lights.len() > MAX_SHADOW_PAIRS {
+            return Ok(format!("{} spheres may stand in each other's light", spheres.len()));
+        }
+        for (r, receiver) in spheres.iter().enumerate().filter(|(_, s)| s.kd != 0.0 || s.ks != 0.0) {
+            if !beyond_image_plane(self.scene, receiver) {
+                return Ok(format!("{} may be seen from inside, where it shadows itself", self.name(r)));
+            }
+            for (l, light) in lights.iter().enumerate().filter(|(_, l)| l.intensity != DVec3::ZERO) {
+                if !self.clear_of_itself(receiver, light) {
+                    return Ok(format!("{} is too far away for its own shadow to be ruled out", self.name(r)));
+                }
+                let blocker = spheres.iter().enumerate().find(|&(b, blocker)| b != r && may_block(light, receiver, blocker));
+                if let Some((b, _)) = blocker {
+                    let light = self.scene.light_names.get(l);
+                    return Ok(format!("{} may stand between light '{light}' and {}", self.name(b), self.name(r)));
+                }
+            }
+        }
+        if spheres.len() == 1 {
+            Err("the only sphere is convex and seen from outside".into())
+        } else {
+            Err("no sphere stands between a light and a lit sphere".into())
+        }
+    }
+
+    /// Whether rounding in f32 can never make a convex sphere shadow itself.
+    fn clear_of_itself(&self, receiver: &Sphere, light: &Light) -> bool {
+        let distance = (light.position - receiver.center).length() - radius(receiver);
+        match self.settings.secondary {
+            Secondary::Epsilon(epsilon) => rounding(receiver) < epsilon * distance,
+            Secondary::SkipSelf => true,
+        }
+    }
+
+    /// The depth that can matter, and the finding.
+    fn reflections(&self) -> (u32, Finding) {
+        let Scene { spheres, .. } = self.scene;
+        if self.settings.max_depth == 0 {
+            return (0, Err("the greatest depth is 0".into()));
+        }
+        let mut mirrors = spheres.iter().enumerate().filter(|(_, s)| s.kr != 0.0).map(|(index, _)| index);
+        let Some(first) = mirrors.next() else {
+            return (0, Err("no sphere has Kr > 0".into()));
+        };
+        let name = self.name(first);
+        let outside_only = beyond_image_plane(self.scene, &spheres[first]) && self.far_from_others(first);
+        match (mirrors.next(), outside_only) {
+            (None, true) if spheres.len() == 1 => {
+                (0, Err(format!("{name} is alone, convex and seen from outside: its reflection rays hit nothing")))
+            }
+            (None, true) => (1, Ok(format!("{name} is the only one with Kr > 0: one bounce is all that matters"))),
+            _ => (self.settings.max_depth, Ok(format!("{name} has Kr > 0"))),
+        }
+    }
+
+    /// Whether a reflection ray that leaves this sphere can never start within rounding or epsilon of a surface.
+    fn far_from_others(&self, index: usize) -> bool {
+        let own = &self.scene.spheres[index];
+        let epsilon = match self.settings.secondary {
+            Secondary::Epsilon(epsilon) if rounding(own) < epsilon => epsilon,
+            Secondary::Epsilon(_) => return false,
+            Secondary::SkipSelf => 0.0,
+        };
+        self.scene.spheres.iter().enumerate().filter(|&(other, _)| other != index).all(|(_, other)| {
+            let gap = (own.center - other.center).length() - radius(own) - radius(other);
+            gap > 2.0 * epsilon + rounding(own) + rounding(other)
+        })
+    }
+
+    fn shells(&self) -> Finding {
+        match self.first_cut {
+            Some(index) => Ok(format!("{} is not wholly beyond the image plane", self.name(index))),
+            None => Err("every sphere is wholly beyond the image plane".into()),
+        }
+    }
+
+    fn ellipsoids(&self) -> Finding {
+        if let Some(name) = self.first(|s| s.scale.abs() != DVec3::splat(s.scale.x.abs())) {
+            return Ok(format!("{name} has unequal semi-axes"));
+        }
+        match self.first(|s| !COMMON_SIZES.contains(&s.scale.x.abs())) {
+            Some(name) => Ok(format!("{name} is so small or large that its size must be scaled out")),
+            None => Err("every sphere has three equal semi-axes".into()),
+        }
+    }
+}
+
+/// The radius of the bounding sphere.
+fn radius(sphere: &Sphere) -> f64 {
+    sphere.scale.abs().max_element()
+}
+
+/// How far 64 roundings in f32 can move a point of the sphere; grazing rays magnify them by the axis ratio.
+fn rounding(sphere: &Sphere) -> f64 {
+    let ratio = radius(sphere) / sphere.scale.abs().min_element();
+    64.0 * f64::from(f32::EPSILON) * (sphere.center.length() + radius(sphere)) * ratio
+}
+
+/// Whether no primary ray can meet the sphere at or before the image plane, nor from inside.
+fn beyond_image_plane(scene: &Scene, sphere: &Sphere) -> bool {
+    let near = scene.window.near;
+    let margin = 1e-4 * (near + sphere.center.z.abs());
+    sphere.center.z + sphere.scale.z.abs() < -near - margin
+}
+
+/// Whether `blocker` comes near the hull of the light and the receiver, both taken as bounding spheres.
+fn may_block(light: &Light, receiver: &Sphere, blocker: &Sphere) -> bool {
+    let axis = receiver.center - light.position;
+    let to_blocker = blocker.center - light.position;
+    let (r, b) = (radius(receiver), radius(blocker));
+    // A sphere of radius s·r around light + s·axis, s in 0..=1, sweeps the hull: its distance to the blocker at the s that
+    // is nearest. Linear in s, so the ends and the stationary point are enough.
+    let clearance = |s: f64| (to_blocker - axis * s).length() - s * r;
+    let length_squared = axis.length_squared();
+    let nearest = if length_squared > r * r {
+        // The distance from the cone's surface: shift the foot point along the axis by the half angle.
+        let along = to_blocker.dot(axis) / length_squared;
+        let aside = (to_blocker - axis * along).length();
+        along + aside * r / (length_squared * (length_squared - r * r)).sqrt()
+    } else {
+        return true; // the light is inside the receiver's bound
+    };
+    let least = clearance(0.0).min(clearance(1.0)).min(clearance(nearest.clamp(0.0, 1.0)));
+    let scale = light.position.length() + receiver.center.length() + blocker.center.length() + r + b;
+    least < b + 1e-3 * scale
+}

@@ -1,0 +1,427 @@
+//! Writing pictures: rows in, a finished file or nothing out.
+
+use std::ffi::OsStr;
+use std::fmt;
+use std::fs::{self, File, OpenOptions, Permissions};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
+
+use png::StreamWriter;
+use tempfile::TempPath;
+
+use super::{Format, sample_count};
+
+/// Where a picture goes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Target {
+    /// A file, replaced as a whole when the picture is complete.
+    File(PathBuf),
+    /// Standard output.
+    Stdout,
+}
+
+impl Target {
+    /// The target that a command line argument names: `-` is standard output, everything else a file.
+    pub fn from_argument(argument: &OsStr) -> Self {
+        if argument == "-" { Self::Stdout } else { Self::File(argument.into()) }
+    }
+
+    fn error(&self, attempted: &'static str, source: io::Error) -> OutputError {
+        OutputError { target: self.clone(), attempted, source }
+    }
+}
+
+impl fmt::Display for Target {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::File(path) => path.display().fmt(f),
+            Self::Stdout => f.pad("standard output"),
+        }
+    }
+}
+
+/// A picture that could not be written: where to, what was being done, and what went wrong.
+///
+/// Its text names all three, so there is no further [`source`](std::error::Error::source) to print.
+#[derive(Debug)]
+pub struct OutputError {
+    target: Target,
+    attempted: &'static str,
+    source: io::Error,
+}
+
+impl OutputError {
+    /// Where the picture was to go.
+    pub fn target(&self) -> &Target {
+        &self.target
+    }
+
+    /// What went wrong; [`io::ErrorKind::BrokenPipe`] is a reader of standard output that has seen enough.
+    pub fn kind(&self) -> io::ErrorKind {
+        self.source.kind()
+    }
+}
+
+impl fmt::Display for OutputError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "cannot {} {}: {}", self.attempted, self.target, self.source)
+    }
+}
+
+impl std::error::Error for OutputError {}
+
+/// Writes a picture row by row in bounded memory.
+///
+/// A file is written under a temporary name in the same folder and takes its real name in [`finish`](Self::finish);
+/// a writer dropped before leaves no trace, and a file that was there stays as it was. A replaced file's permissions are
+/// kept. A symbolic link stays and the file behind it is replaced. What is no regular file (`/dev/null`, a FIFO) is
+/// written to directly, as is standard output.
+pub struct PictureWriter {
+    // Dropped in this order: the encoder closes the temporary file before the placement removes it.
+    encoder: Encoder,
+    placement: Placement,
+    target: Target,
+    failure: Failure,
+    missing: u64, // samples
+}
+
+impl PictureWriter {
+    /// Opens the target and writes the header of a picture of `width`×`height` pixels, both at least 1.
+    ///
+    /// # Errors
+    /// An impossible size, a folder that does not exist, a file or folder without write permission.
+    pub fn create(target: &Target, format: Format, width: u32, height: u32) -> Result<Self, OutputError> {
+        let error = |source| target.error("create", source);
+        let missing = sample_count(width, height).map_err(|wrong| error(invalid(wrong)))? as u64;
+        let (raw, placement) = match target {
+            Target::File(path) => open(path).map_err(error)?,
+            Target::Stdout => (Raw::Stdout(io::stdout()), Placement::InPlace),
+        };
+        let failure = Failure::default();
+        let output = BufWriter::with_capacity(1 << 16, Watched { raw, failure: Arc::clone(&failure) });
+        let encoder =
+            Encoder::new(format, output, width, height).map_err(|wrapped| error(original(&failure, wrapped)))?;
+        Ok(Self { encoder, placement, target: target.clone(), failure, missing })
+    }
+
+    /// Appends RGB samples in reading order; calls may end anywhere, also within a row or a pixel.
+    ///
+    /// # Errors
+    /// More samples than the picture has (none of them is written then), or whatever the system says. After an error
+    /// the writer can only be dropped.
+    pub fn write_rows(&mut self, rgb: &[u8]) -> Result<(), OutputError> {
+        let count = rgb.len() as u64;
+        if count > self.missing {
+            let excess = count - self.missing;
+            return Err(self
+                .target
+                .error("write", invalid(format!("samples beyond the end of the picture: {excess}"))));
+        }
+        self.encoder.write(rgb).map_err(|error| self.target.error("write", original(&self.failure, error)))?;
+        self.missing -= count;
+        Ok(())
+    }
+
+    /// Completes the picture and gives the file its name.
+    ///
+    /// # Errors
+    /// Samples that never came, or whatever the system says; a file that was there before is untouched then.
+    pub fn finish(self) -> Result<(), OutputError> {
+        let Self { encoder, placement, target, failure, missing } = self;
+        let error = |source| target.error("finish", source);
+        if missing > 0 && failure.get().is_none() {
+            return Err(error(invalid(format!("samples missing at the end of the picture: {missing}"))));
+        }
+        encoder.finish().map_err(|wrapped| error(original(&failure, wrapped)))?;
+        if let Some(unreported) = failure.get() {
+            return Err(error(duplicate(unreported)));
+        }
+        if target == Target::Stdout {
+            io::stdout().flush().map_err(error)?;
+        }
+        placement.settle().map_err(error)
+    }
+}
+
+impl fmt::Debug for PictureWriter {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.debug_struct("PictureWriter")
+            .field("target", &self.target)
+            .field("missing", &self.missing)
+            .finish_non_exhaustive()
+    }
+}
+
+fn invalid(reason: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidInput, reason)
+}
+
+// --- where the bytes go ---------------------------------------------------------------------------------------------
+
+/// What remains to be done with the file once its bytes are complete.
+enum Placement {
+    InPlace,
+    Rename { temporary: TempPath, destination: PathBuf, permissions: Option<Permissions> },
+}
+
+impl Placement {
+    fn settle(self) -> io::Result<()> {
+        match self {
+            Self::InPlace => Ok(()),
+            Self::Rename { temporary, destination, permissions } => {
+                if let Some(permissions) = permissions {
+                    fs::set_permissions(&temporary, permissions)?;
+                }
+                temporary.persist(destination).map_err(|failed| failed.error)
+            }
+        }
+    }
+}
+
+fn open(path: &Path) -> io::Result<(Raw, Placement)> {
+    match fs::symlink_metadata(path) {
+        Ok(found) if found.is_file() => replace(path),
+        Ok(found) if found.is_symlink() && leads_to_replaceable(path)? => replace(&fs::canonicalize(path)?),
+        Ok(_) => {
+            let file = OpenOptions::new().write(true).create(true).truncate(true).open(path)?;
+            Ok((Raw::File(file), Placement::InPlace))
+        }
+        Err(error) if error.kind() == io::ErrorKind::NotFound => create_new(path),
+        Err(error) => Err(error),
+    }
+}
+
+/// Whether a symbolic link stands for a regular file that may be exchanged for another.
+///
+/// Links below `/dev` and `/proc` stand for a file that someone holds open (`/dev/stdout`): exchanging it would leave
+/// the holder with the old one.
+fn leads_to_replaceable(link: &Path) -> io::Result<bool> {
+    if !fs::metadata(link).is_ok_and(|found| found.is_file()) {
+        return Ok(false);
+    }
+    let folder = fs::canonicalize(folder_of(link))?;
+    Ok(!folder.starts_with("/dev") && !folder.starts_with("/proc"))
+}
+
+fn replace(path: &Path) -> io::Result<(Raw, Placement)> {
+    // Renaming needs no write permission on the file itself; ask for it as an ordinary write would.
+    let permissions = OpenOptions::new().write(true).open(path)?.metadata()?.permissions();
+    temporary_for(path, Some(permissions))
+}
+
+fn create_new(path: &Path) -> io::Result<(Raw, Placement)> {
+    if path.file_name().is_none() {
+        return Err(invalid("that is no file name"));
+    }
+    let folder = folder_of(path);
+    if !folder.exists() {
+        return Err(io::Error::new(io::ErrorKind::NotFound, format!("there is no folder `{}`", folder.display())));
+    }
+    temporary_for(path, None)
+}
+
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if folder != "" => folder,
+        _ => Path::new("."),
+    }
+}
+
+fn temporary_for(path: &Path, permissions: Option<Permissions>) -> io::Result<(Raw, Placement)> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".trueray-").suffix(".part");
+    #[cfg(unix)]
+    {
+        // As any created file: the system takes the umask off. The default would be readable by the owner only.
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(Permissions::from_mode(0o666));
+    }
+    let file = builder.tempfile_in(folder_of(path)).map_err(|error| without_temporary_name(&error))?;
+    let (file, temporary) = file.into_parts();
+    Ok((Raw::File(file), Placement::Rename { temporary, destination: path.to_owned(), permissions }))
+}
+
+/// The system's error without the temporary file's random name, which would tell the reader nothing.
+fn without_temporary_name(error: &io::Error) -> io::Error {
+    let inner = error.get_ref().and_then(std::error::Error::source).and_then(|source| source.downcast_ref());
+    inner.map_or(error.kind().into(), duplicate)
+}
+
+enum Raw {
+    File(File),
+    Stdout(io::Stdout),
+}
+
+/// The first error of an output.
+type Failure = Arc<OnceLock<io::Error>>;
+
+/// An output that remembers its first error: the PNG encoder writes its last bytes while it is dropped, where nobody
+/// else would hear of one.
+struct Watched {
+    raw: Raw,
+    failure: Failure,
+}
+
+impl Watched {
+    fn watch<T>(&self, result: io::Result<T>) -> io::Result<T> {
+        if let Err(error) = &result
+            && error.kind() != io::ErrorKind::Interrupted
+        {
+            self.failure.get_or_init(|| duplicate(error));
+        }
+        result
+    }
+}
+
+impl Write for Watched {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let result = match &mut self.raw {
+            Raw::File(file) => file.write(bytes),
+            Raw::Stdout(stdout) => stdout.write(bytes),
+        };
+        self.watch(result)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let result = match &mut self.raw {
+            Raw::File(file) => file.flush(),
+            Raw::Stdout(stdout) => stdout.flush(),
+        };
+        self.watch(result)
+    }
+}
+
+/// The system's error behind one of the encoder's, which may have lost its kind on the way.
+fn original(failure: &Failure, error: io::Error) -> io::Error {
+    failure.get().map_or(error, duplicate)
+}
+
+fn duplicate(error: &io::Error) -> io::Error {
+    match error.raw_os_error() {
+        Some(code) => io::Error::from_raw_os_error(code),
+        None => io::Error::new(error.kind(), error.to_string()),
+    }
+}
+
+// --- what the bytes are ---------------------------------------------------------------------------------------------
+
+type Output = BufWriter<Watched>;
+
+enum Encoder {
+    P6(Output),
+    P3(Plain),
+    Png(Box<StreamWriter<'static, Output>>),
+}
+
+impl Encoder {
+    fn new(format: Format, mut output: Output, width: u32, height: u32) -> io::Result<Self> {
+        match format {
+            Format::P6 => {
+                write!(output, "P6\n{width} {height}\n255\n")?;
+                Ok(Self::P6(output))
+            }
+            Format::P3 => {
+                write!(output, "P3\n{width} {height}\n255\n")?;
+                Ok(Self::P3(Plain::new(output, width)))
+            }
+            Format::Png => Ok(Self::Png(Box::new(png_stream(output, width, height)?))),
+        }
+    }
+
+    fn write(&mut self, rgb: &[u8]) -> io::Result<()> {
+        match self {
+            Self::P6(output) => output.write_all(rgb),
+            Self::P3(plain) => plain.write(rgb),
+            Self::Png(stream) => stream.write_all(rgb),
+        }
+    }
+
+    fn finish(self) -> io::Result<()> {
+        match self {
+            Self::P6(mut output) | Self::P3(Plain { mut output, .. }) => output.flush(),
+            Self::Png(stream) => Ok(stream.finish()?),
+        }
+    }
+}
+
+fn png_stream(output: Output, width: u32, height: u32) -> Result<StreamWriter<'static, Output>, png::EncodingError> {
+    let mut encoder = png::Encoder::new(output, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::Fast);
+    encoder.write_header()?.into_stream_writer()
+}
+
+/// Samples in a line of P3: five pixels, at most 59 characters where the format allows 70.
+const LINE_SAMPLES: u64 = 15;
+
+/// The decimal text of each sample value, padded with blanks, and its length with one blank after it.
+const DECIMALS: [([u8; 4], usize); 256] = {
+    let mut table = [([b' '; 4], 0); 256];
+    let mut value = 0;
+    while value < 256 {
+        let digits = [b'0' + (value / 100) as u8, b'0' + (value / 10 % 10) as u8, b'0' + (value % 10) as u8];
+        let skipped = if value < 10 {
+            2
+        } else if value < 100 {
+            1
+        } else {
+            0
+        };
+        let mut at = skipped;
+        while at < 3 {
+            table[value].0[at - skipped] = digits[at];
+            at += 1;
+        }
+        table[value].1 = 4 - skipped;
+        value += 1;
+    }
+    table
+};
+
+/// The encoder of P3; each picture row starts on a new line.
+struct Plain {
+    output: Output,
+    row_samples: u64,
+    row_left: u64,
+    line_left: u64,
+}
+
+impl Plain {
+    fn new(output: Output, width: u32) -> Self {
+        let row_samples = width as u64 * 3;
+        Self { output, row_samples, row_left: row_samples, line_left: row_samples.min(LINE_SAMPLES) }
+    }
+
+    fn write(&mut self, mut rgb: &[u8]) -> io::Result<()> {
+        while !rgb.is_empty() {
+            let count = self.line_left.min(rgb.len() as u64);
+            let (now, later) = rgb.split_at(count as usize);
+            self.write_in_line(now)?;
+            rgb = later;
+        }
+        Ok(())
+    }
+
+    /// Writes samples that fit into the current line.
+    fn write_in_line(&mut self, rgb: &[u8]) -> io::Result<()> {
+        let mut text = [0; 4 * LINE_SAMPLES as usize];
+        let mut length = 0;
+        for &sample in rgb {
+            let (digits, used) = DECIMALS[sample as usize];
+            text[length..length + 4].copy_from_slice(&digits);
+            length += used;
+        }
+        self.line_left -= rgb.len() as u64;
+        self.row_left -= rgb.len() as u64;
+        if self.line_left == 0 {
+            text[length - 1] = b'\n';
+            if self.row_left == 0 {
+                self.row_left = self.row_samples;
+            }
+            self.line_left = self.row_left.min(LINE_SAMPLES);
+        }
+        self.output.write_all(&text[..length])
+    }
+}

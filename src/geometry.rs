@@ -1,0 +1,66 @@
+//! Spheres as the intersection sees them: the same numbers for CPU and GPU.
+//!
+//! Object space is chosen so that nothing overflows and nothing is rounded needlessly: world vectors are multiplied by
+//! `inv_scale` and the ellipsoid becomes a sphere of `radius` in [1, 2) around the origin. `inv_scale` is a power of two
+//! times the ratio of the greatest semi-axis to each axis, so for a true sphere the way into object space is exact.
+
+use glam::DVec3;
+
+use crate::scene::{Scene, Sphere};
+
+/// An axis-aligned ellipsoid prepared for intersection.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ellipsoid {
+    /// Centre in world space.
+    pub center: DVec3,
+    /// World to object: 2ᵏ·max|s| / |s| / max|s| per axis, i.e. 2ᵏ times a ratio ≥ 1.
+    pub inv_scale: DVec3,
+    /// Object to world: 1/`inv_scale`.
+    pub scale: DVec3,
+    /// Radius in object space: 2ᵏ·max|s|, in [1, 2).
+    pub radius: f64,
+}
+
+impl Ellipsoid {
+    /// Prepares `sphere`; a negative scale means its absolute value.
+    pub fn new(sphere: &Sphere) -> Self {
+        let s = sphere.scale.abs();
+        let largest = s.max_element();
+        let k = reciprocal_power_of_two(largest);
+        Self {
+            center: sphere.center,
+            inv_scale: DVec3::new(largest / s.x, largest / s.y, largest / s.z) * k,
+            scale: s / largest / k,
+            radius: largest * k,
+        }
+    }
+
+    /// Bits that are equal exactly when two ellipsoids are the same surface to the intersection.
+    pub fn bits(&self) -> [u64; 7] {
+        let (c, i) = (self.center + DVec3::ZERO, self.inv_scale); // + 0 turns −0 into 0
+        [c.x, c.y, c.z, i.x, i.y, i.z, self.radius].map(f64::to_bits)
+    }
+}
+
+/// The power of two k with `x`·k in [1, 2), for a positive normal `x`; subnormal scales are treated as the least normal one.
+fn reciprocal_power_of_two(x: f64) -> f64 {
+    const EXPONENT: u64 = 0x7ff << 52;
+    let exponent = (x.to_bits() & EXPONENT).max(1 << 52);
+    // 2^-(e - bias): bias 1023 gives the stored exponent 2046 - e; the two largest binades map to the least normal number.
+    f64::from_bits((2046_u64 << 52).saturating_sub(exponent).max(1 << 52))
+}
+
+/// Prepares every sphere of `scene`; without `true_axes` each becomes its bounding sphere.
+pub fn ellipsoids(scene: &Scene, true_axes: bool) -> Vec<Ellipsoid> {
+    let prepare = |sphere: &Sphere| {
+        let bounding = Sphere { scale: DVec3::splat(sphere.scale.abs().max_element()), ..*sphere };
+        Ellipsoid::new(if true_axes { sphere } else { &bounding })
+    };
+    scene.spheres.iter().map(prepare).collect()
+}
+
+/// For each sphere the lowest index of a sphere with the bit-identical surface: rays that leave one leave them all.
+pub fn shape_indices(spheres: &[Ellipsoid]) -> Vec<u32> {
+    let mut first = std::collections::HashMap::with_capacity(spheres.len());
+    spheres.iter().enumerate().map(|(index, sphere)| *first.entry(sphere.bits()).or_insert(index as u32)).collect()
+}

@@ -1,0 +1,270 @@
+//! Finding and opening a Vulkan device.
+
+use std::fmt;
+use std::str::FromStr;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use serde::Serialize;
+
+use super::error::Error;
+use super::shader::Module;
+
+/// Which device renders.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum Choice {
+    /// The best Vulkan device, or the CPU reference where there is none.
+    #[default]
+    Auto,
+    /// The CPU reference.
+    Cpu,
+    /// The best Vulkan device; none is an error.
+    Gpu,
+    /// The Vulkan device with this index in the list.
+    Index(usize),
+    /// The only Vulkan device whose name or driver contains this text, or whose PCI id this is.
+    Name(String),
+}
+
+impl FromStr for Choice {
+    type Err = std::convert::Infallible;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        Ok(match text {
+            "auto" => Self::Auto,
+            "cpu" => Self::Cpu,
+            "gpu" => Self::Gpu,
+            _ => text.parse().map_or_else(|_| Self::Name(text.into()), Self::Index),
+        })
+    }
+}
+
+/// One Vulkan device as a user sees it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct DeviceInfo {
+    /// Place in the list; stable as long as drivers and hardware are.
+    pub index: usize,
+    /// The device's name.
+    pub name: String,
+    /// Discrete, integrated, virtual or software.
+    #[serde(rename = "type")]
+    pub kind: &'static str,
+    /// The driver with its version.
+    pub driver: String,
+    /// PCI id such as `0000:01:00.0`; empty for devices without one.
+    pub pci: String,
+    /// Whether shaders can calculate in `f64`.
+    pub f64: bool,
+    /// Greatest size of one storage buffer binding, in bytes.
+    pub max_storage_binding: u64,
+    /// Greatest size of one buffer, in bytes.
+    pub max_buffer: u64,
+    /// Greatest number of workgroups of a dispatch in one direction.
+    pub max_workgroups: u32,
+    /// Greatest number of invocations of a workgroup.
+    pub max_invocations: u32,
+}
+
+impl DeviceInfo {
+    fn new(index: usize, adapter: &wgpu::Adapter) -> Self {
+        let info = adapter.get_info();
+        let limits = adapter.limits();
+        Self {
+            index,
+            name: info.name,
+            kind: match info.device_type {
+                wgpu::DeviceType::DiscreteGpu => "discrete",
+                wgpu::DeviceType::IntegratedGpu => "integrated",
+                wgpu::DeviceType::VirtualGpu => "virtual",
+                wgpu::DeviceType::Cpu => "software",
+                wgpu::DeviceType::Other => "other",
+            },
+            driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
+            pci: info.device_pci_bus_id,
+            f64: adapter.features().contains(wgpu::Features::SHADER_F64),
+            max_storage_binding: limits.max_storage_buffer_binding_size,
+            max_buffer: limits.max_buffer_size,
+            max_workgroups: limits.max_compute_workgroups_per_dimension,
+            max_invocations: limits.max_compute_invocations_per_workgroup,
+        }
+    }
+
+    fn matches(&self, text: &str) -> bool {
+        let text = text.to_lowercase();
+        self.pci.to_lowercase() == text || [&self.name, &self.driver].iter().any(|s| s.to_lowercase().contains(&text))
+    }
+
+    /// Better devices first: real before virtual before software; the power preference swaps the first two.
+    fn rank(&self, low_power: bool) -> u8 {
+        match (self.kind, low_power) {
+            ("discrete", false) | ("integrated", true) => 0,
+            ("integrated", false) | ("discrete", true) => 1,
+            ("virtual", _) => 2,
+            ("software", _) => 4,
+            _ => 3,
+        }
+    }
+}
+
+impl fmt::Display for DeviceInfo {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} ({}, {})", self.name, self.kind, self.driver)
+    }
+}
+
+/// An open device.
+#[derive(Debug)]
+pub struct Gpu {
+    /// What it is.
+    pub info: DeviceInfo,
+    pub(super) device: wgpu::Device,
+    pub(super) queue: wgpu::Queue,
+    /// Whether host and device share memory, so that a storage buffer can be mapped.
+    pub(super) mappable: bool,
+    failure: Arc<Mutex<Option<String>>>,
+}
+
+/// All Vulkan devices, in the driver's order.
+pub fn list() -> Result<Vec<DeviceInfo>, Error> {
+    Ok(adapters()?.1.into_iter().map(|(info, _)| info).collect())
+}
+
+type Adapters = Vec<(DeviceInfo, wgpu::Adapter)>;
+
+fn adapters() -> Result<(wgpu::Instance, Adapters), Error> {
+    if let Some(backends) = wgpu::Backends::from_env()
+        && !backends.contains(wgpu::Backends::VULKAN)
+    {
+        return Err(Error::NoDevice("WGPU_BACKEND leaves out Vulkan, the only backend of this program".into()));
+    }
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+        backends: wgpu::Backends::VULKAN,
+        flags: wgpu::InstanceFlags::empty().with_env(),
+        ..wgpu::InstanceDescriptor::new_without_display_handle()
+    });
+    let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::VULKAN));
+    let adapters =
+        adapters.into_iter().enumerate().map(|(i, adapter)| (DeviceInfo::new(i, &adapter), adapter)).collect();
+    Ok((instance, adapters))
+}
+
+impl Gpu {
+    /// Opens the chosen device; [`Choice::Auto`] and [`Choice::Cpu`] mean the best one here.
+    ///
+    /// `WGPU_ADAPTER_NAME` and `WGPU_POWER_PREF` decide where the choice leaves it open.
+    pub fn open(choice: &Choice) -> Result<Self, Error> {
+        let (_instance, adapters) = adapters()?;
+        let index = choose(choice, adapters.iter().map(|(info, _)| info))?;
+        let (info, adapter) = adapters.into_iter().nth(index).ok_or_else(|| no_devices(""))?;
+        Self::open_adapter(info, &adapter)
+    }
+
+    fn open_adapter(info: DeviceInfo, adapter: &wgpu::Adapter) -> Result<Self, Error> {
+        let shares_memory = matches!(info.kind, "software" | "integrated");
+        let mut features = wgpu::Features::SHADER_F64;
+        if shares_memory {
+            features |= wgpu::Features::MAPPABLE_PRIMARY_BUFFERS;
+        }
+        let features = features & adapter.features();
+        let request = adapter.request_device(&wgpu::DeviceDescriptor {
+            label: None,
+            required_features: features,
+            required_limits: adapter.limits(),
+            memory_hints: wgpu::MemoryHints::MemoryUsage,
+            ..wgpu::DeviceDescriptor::default()
+        });
+        let (device, queue) =
+            pollster::block_on(request).map_err(|e| Error::NoDevice(format!("{info} cannot be opened: {e}")))?;
+
+        let failure = Arc::new(Mutex::new(None));
+        let slot = Arc::clone(&failure);
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| note(&slot, error.to_string())));
+        let slot = Arc::clone(&failure);
+        device.set_device_lost_callback(move |_, message| note(&slot, message));
+        let mappable = features.contains(wgpu::Features::MAPPABLE_PRIMARY_BUFFERS);
+        Ok(Self { info, device, queue, mappable, failure })
+    }
+
+    /// Runs `action` and turns what the device reported meanwhile into an error.
+    pub(super) fn checked<T>(&self, what: &str, action: impl FnOnce() -> T) -> Result<T, Error> {
+        let value = action();
+        match self.failure.lock().unwrap_or_else(PoisonError::into_inner).take() {
+            None => Ok(value),
+            Some(message) => Err(Error::Lost(format!("{what} on {}: {message}", self.info))),
+        }
+    }
+
+    /// Waits until everything submitted is done.
+    pub(super) fn wait(&self) -> Result<(), Error> {
+        self.checked("waiting for a dispatch", || self.device.poll(wgpu::PollType::wait_indefinitely()))?
+            .map(|_| ())
+            .map_err(|error| Error::Lost(format!("{} stopped answering: {error}", self.info)))
+    }
+
+    /// Hands the composed text to the driver.
+    pub(super) fn shader_module(&self, module: &Module) -> Result<wgpu::ShaderModule, Error> {
+        let descriptor = wgpu::ShaderModuleDescriptor {
+            label: None,
+            source: wgpu::ShaderSource::Wgsl(module.text.as_str().into()),
+        };
+        self.checked("reading the shader", || {
+            #[allow(
+                unsafe_code,
+                reason = "runtime checks cost up to 30 %: every index is below a length that the host set with the \
+                          buffers, every loop counts up to a bound, no integer is divided"
+            )]
+            unsafe {
+                self.device.create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked())
+            }
+        })
+    }
+}
+
+fn note(slot: &Mutex<Option<String>>, message: String) {
+    slot.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(message);
+}
+
+fn no_devices(which: &str) -> Error {
+    Error::NoDevice(format!(
+        "no Vulkan device{which} was found. A software one is in Debian's package mesa-vulkan-drivers; \
+         `--device cpu` renders without any"
+    ))
+}
+
+/// The index of the device that `choice` and the environment mean.
+fn choose<'a>(choice: &Choice, devices: impl Iterator<Item = &'a DeviceInfo>) -> Result<usize, Error> {
+    let devices: Vec<_> = devices.collect();
+    if devices.is_empty() {
+        return Err(no_devices(""));
+    }
+    let listing = || devices.iter().map(|d| format!("\n  {}: {d}", d.index)).collect::<String>();
+    let named = |name: &str, source: &str| -> Result<Vec<&DeviceInfo>, Error> {
+        let found: Vec<_> = devices.iter().copied().filter(|device| device.matches(name)).collect();
+        if found.is_empty() {
+            let message = format!("{source} '{name}' matches no Vulkan device; there are:{}", listing());
+            return Err(Error::NoDevice(message));
+        }
+        Ok(found)
+    };
+    match choice {
+        Choice::Index(index) => devices
+            .get(*index)
+            .map(|device| device.index)
+            .ok_or_else(|| Error::NoDevice(format!("there is no Vulkan device {index}; there are:{}", listing()))),
+        Choice::Name(name) => match named(name, "--device")?[..] {
+            [device] => Ok(device.index),
+            _ => Err(Error::NoDevice(format!(
+                "--device '{name}' matches several Vulkan devices; choose one by its index:{}",
+                listing()
+            ))),
+        },
+        Choice::Auto | Choice::Cpu | Choice::Gpu => {
+            let candidates = match std::env::var("WGPU_ADAPTER_NAME") {
+                Ok(name) if !name.is_empty() => named(&name, "WGPU_ADAPTER_NAME")?,
+                _ => devices.clone(),
+            };
+            let low_power = wgpu::PowerPreference::from_env() == Some(wgpu::PowerPreference::LowPower);
+            let best = candidates.iter().min_by_key(|device| device.rank(low_power));
+            best.map(|device| device.index).ok_or_else(|| no_devices(""))
+        }
+    }
+}

@@ -1,0 +1,23 @@
+//! What can go wrong on the way to a GPU picture.
+
+use std::fmt;
+
+/// Why there is no picture from the GPU.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Error {
+    /// No device, or not the one that was asked for, or it cannot do what is needed.
+    NoDevice(String),
+    /// The device was lost, or failed, while it worked.
+    Lost(String),
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoDevice(why) => f.write_str(why),
+            Self::Lost(why) => write!(f, "the device was lost: {why}"),
+        }
+    }
+}
+
+impl std::error::Error for Error {}

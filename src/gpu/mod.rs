@@ -1,0 +1,15 @@
+//! The GPU path: a WGSL compute shader on any Vulkan device.
+
+mod device;
+mod error;
+pub mod layout;
+mod pack;
+mod pipeline;
+mod render;
+mod shader;
+
+pub use device::{Choice, DeviceInfo, Gpu, list};
+pub use error::Error;
+pub use pipeline::{ENTRY_POINT, Specialisation};
+pub use render::{DeviceTimes, GpuRenderer};
+pub use shader::Module;

@@ -1,0 +1,79 @@
+//! From effects to a compiled kernel: the only place that sets the constants of `shaders/effects.wgsl`.
+
+use super::device::Gpu;
+use super::error::Error;
+use super::shader::Module;
+use crate::effects::{Effect, EffectSet};
+use crate::scene::Scene;
+use crate::settings::{Secondary, Settings, Specular};
+
+/// Up to this many spheres or lights a pipeline is compiled for their very number.
+const MAX_CONSTANT_COUNT: usize = 16;
+
+/// What a pipeline is specialised for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Specialisation {
+    /// The effects that it simulates.
+    pub effects: EffectSet,
+    /// Whether secondary rays skip their own sphere.
+    pub skip_self: bool,
+    /// Whether the specular term is (N·H)ⁿ.
+    pub blinn: bool,
+    /// Number of spheres, or 0 where the kernel reads it from the parameters.
+    pub sphere_count: u32,
+    /// Number of lights, or 0 where the kernel reads it from the parameters.
+    pub light_count: u32,
+}
+
+impl Specialisation {
+    /// For `scene` with `effects` under `settings`.
+    pub fn new(scene: &Scene, settings: &Settings, effects: EffectSet) -> Self {
+        let constant = |count: usize| if count <= MAX_CONSTANT_COUNT { count as u32 } else { 0 };
+        Self {
+            effects,
+            skip_self: settings.secondary == Secondary::SkipSelf,
+            blinn: settings.specular == Specular::Blinn,
+            sphere_count: constant(scene.spheres.len()),
+            light_count: constant(scene.lights.len()),
+        }
+    }
+
+    /// The constants by name; booleans are 0 and 1.
+    pub fn constants(&self) -> Vec<(&'static str, f64)> {
+        let on = |effect| f64::from(self.effects.has(effect));
+        vec![
+            ("AMBIENT", on(Effect::Ambient)),
+            ("DIFFUSE", on(Effect::Diffuse)),
+            ("SPECULAR", on(Effect::Specular)),
+            ("SHADOWS", on(Effect::Shadows)),
+            ("REFLECTIONS", on(Effect::Reflections)),
+            ("SHELLS", on(Effect::Shells)),
+            ("ELLIPSOIDS", on(Effect::Ellipsoids)),
+            ("SKIP_SELF", f64::from(self.skip_self)),
+            ("BLINN", f64::from(self.blinn)),
+            ("SPHERE_COUNT", f64::from(self.sphere_count)),
+            ("LIGHT_COUNT", f64::from(self.light_count)),
+        ]
+    }
+}
+
+/// The entry point that renders tiles.
+pub const ENTRY_POINT: &str = "render_tiles";
+
+/// Compiles the render kernel.
+pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<wgpu::ComputePipeline, Error> {
+    let module = gpu.shader_module(&Module::render())?;
+    gpu.checked("compiling the kernel", || {
+        gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(ENTRY_POINT),
+            layout: None,
+            module: &module,
+            entry_point: Some(ENTRY_POINT),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: &specialisation.constants(),
+                zero_initialize_workgroup_memory: false,
+            },
+            cache: None,
+        })
+    })
+}

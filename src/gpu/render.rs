@@ -1,0 +1,292 @@
+//! Rows of pixels from the device: tiles in dispatches that stay short, read back and put in place.
+
+use std::time::{Duration, Instant};
+
+use rayon::prelude::*;
+use wgpu::util::DeviceExt;
+
+use super::device::Gpu;
+use super::error::Error;
+use super::layout::Params;
+use super::pack::Packed;
+use super::pipeline::{Specialisation, compile};
+use crate::camera::Camera;
+use crate::effects::{Effect, Effects};
+use crate::scene::Scene;
+use crate::settings::Settings;
+use crate::tiles::{Cover, TILE};
+
+/// Pixels of a tile.
+const TILE_PIXELS: usize = (TILE * TILE) as usize;
+/// A dispatch should take about this long: long enough to hide its overhead, far below what loses a device.
+const TARGET_DISPATCH: Duration = Duration::from_millis(40);
+/// Intersection tests of the first dispatch, before any is measured: some milliseconds on the slowest device seen.
+const FIRST_DISPATCH_TESTS: u64 = 4_000_000;
+/// Tiles of a dispatch at the most, for the size of the pixel buffer: 16 MiB.
+const MAX_DISPATCH_TILES: u32 = 65_536;
+
+/// Times of the work on the device so far.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct DeviceTimes {
+    /// From shader text to a kernel that has run once on one tile.
+    pub compile: Duration,
+    /// All dispatches, from submission to completion.
+    pub render: Duration,
+    /// From the device's memory to rows.
+    pub read_back: Duration,
+    /// The longest dispatch.
+    pub longest_dispatch: Duration,
+    /// Number of dispatches.
+    pub dispatches: u64,
+    /// Tiles rendered.
+    pub tiles: u64,
+}
+
+/// A scene on the device, ready to render rows.
+#[derive(Debug)]
+pub struct GpuRenderer<'a> {
+    gpu: &'a Gpu,
+    cover: Cover,
+    width: u32,
+    background: [u8; 3],
+    params: Params,
+    kernel: Option<Kernel>,
+    kernel_inputs: Inputs,
+    tiles_per_dispatch: u32,
+    times: DeviceTimes,
+}
+
+/// Everything that is needed to build the kernel once a tile asks for it.
+#[derive(Debug)]
+struct Inputs {
+    packed: Packed,
+    specialisation: Specialisation,
+}
+
+/// The compiled pipeline with its buffers.
+#[derive(Debug)]
+struct Kernel {
+    pipeline: wgpu::ComputePipeline,
+    bind_group: wgpu::BindGroup,
+    params: wgpu::Buffer,
+    tiles: wgpu::Buffer,
+    pixels: wgpu::Buffer,
+    /// Where the pixels are copied for reading, unless they can be mapped where they are.
+    staging: Option<wgpu::Buffer>,
+    /// Tiles that the buffers hold.
+    capacity: u32,
+}
+
+impl<'a> GpuRenderer<'a> {
+    /// Prepares `scene` for `gpu`; the kernel is compiled when the first tile needs it.
+    pub fn new(gpu: &'a Gpu, scene: &Scene, settings: &Settings, effects: &Effects) -> Result<Self, Error> {
+        let packed = Packed::new(scene, settings, effects);
+        check_fits(gpu, &packed)?;
+        let camera = Camera::new(scene, settings.sampling);
+        let tests_per_pixel = (scene.spheres.len() as u64 + 1)
+            * (1 + scene.lights.len() as u64 * u64::from(effects.set.has(Effect::Shadows)))
+            * (1 + u64::from(effects.depth));
+        let first = FIRST_DISPATCH_TESTS / (tests_per_pixel * TILE_PIXELS as u64);
+        Ok(Self {
+            gpu,
+            cover: Cover::new(scene, &camera, effects.set.has(Effect::Ellipsoids)),
+            width: scene.width,
+            background: settings.quantize.levels(scene.background),
+            params: packed.params,
+            kernel: None,
+            kernel_inputs: Inputs { packed, specialisation: Specialisation::new(scene, settings, effects.set) },
+            tiles_per_dispatch: first.clamp(1, u64::from(MAX_DISPATCH_TILES)) as u32,
+            times: DeviceTimes::default(),
+        })
+    }
+
+    /// Times of the work so far.
+    pub fn times(&self) -> DeviceTimes {
+        self.times
+    }
+
+    /// Renders rows `first` on (a multiple of [`TILE`]) into `rgb`, whole rows of 3 bytes a pixel; returns how many pixels
+    /// are not finite.
+    pub fn rows(&mut self, first: u32, rgb: &mut [u8]) -> Result<u64, Error> {
+        let row_bytes = self.width as usize * 3;
+        let count = (rgb.len() / row_bytes) as u32;
+        let background = self.background;
+        rgb.par_chunks_mut(row_bytes).for_each(|row| row.as_chunks_mut::<3>().0.fill(background));
+
+        let tiles = self.cover.tiles(first, count);
+        let mut not_finite = 0;
+        let mut rest = tiles.as_slice();
+        while !rest.is_empty() {
+            let kernel = match self.kernel.take() {
+                Some(kernel) => kernel,
+                None => self.build_kernel(tiles.len())?,
+            };
+            let limit = self.gpu.info.max_workgroups.min(kernel.capacity).min(self.tiles_per_dispatch);
+            let (now, later) = rest.split_at(rest.len().min(limit as usize));
+            let took = self.dispatch(&kernel, now)?;
+            not_finite += self.read_back(&kernel, now, first, rgb)?;
+            self.kernel = Some(kernel);
+            self.set_pace(now.len(), took);
+            rest = later;
+        }
+        Ok(not_finite)
+    }
+
+    /// Compiles the pipeline and runs it once, since drivers finish compiling at the first dispatch.
+    fn build_kernel(&mut self, tiles: usize) -> Result<Kernel, Error> {
+        let start = Instant::now();
+        let gpu = self.gpu;
+        let Inputs { packed, specialisation } = &self.kernel_inputs;
+        let pipeline = compile(gpu, specialisation)?;
+        let capacity = (tiles as u32).min(MAX_DISPATCH_TILES).min(gpu.info.max_workgroups);
+        let kernel = gpu.checked("reserving buffers", || Kernel::new(gpu, pipeline, packed, capacity))?;
+        let tile = self.cover.tiles(0, u32::MAX).first().copied().unwrap_or_default();
+        self.submit(&kernel, &[tile])?;
+        self.times.compile = start.elapsed();
+        Ok(kernel)
+    }
+
+    fn dispatch(&mut self, kernel: &Kernel, tiles: &[[u32; 2]]) -> Result<Duration, Error> {
+        let start = Instant::now();
+        self.submit(kernel, tiles)?;
+        let took = start.elapsed();
+        self.times.render += took;
+        self.times.longest_dispatch = self.times.longest_dispatch.max(took);
+        self.times.dispatches += 1;
+        self.times.tiles += tiles.len() as u64;
+        Ok(took)
+    }
+
+    /// Runs the kernel over `tiles` and waits for it.
+    fn submit(&self, kernel: &Kernel, tiles: &[[u32; 2]]) -> Result<(), Error> {
+        self.gpu.queue.write_buffer(&kernel.params, 0, bytemuck::bytes_of(&self.params));
+        self.gpu.queue.write_buffer(&kernel.tiles, 0, bytemuck::cast_slice(tiles));
+        let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_pipeline(&kernel.pipeline);
+            pass.set_bind_group(0, &kernel.bind_group, &[]);
+            pass.dispatch_workgroups(tiles.len() as u32, 1, 1);
+        }
+        self.gpu.queue.submit([encoder.finish()]);
+        self.gpu.wait()
+    }
+
+    /// Puts the pixels of `tiles` into `rgb`, whose first row is `first`.
+    fn read_back(&mut self, kernel: &Kernel, tiles: &[[u32; 2]], first: u32, rgb: &mut [u8]) -> Result<u64, Error> {
+        let start = Instant::now();
+        let size = (tiles.len() * TILE_PIXELS * 4) as u64;
+        if let Some(staging) = &kernel.staging {
+            let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            encoder.copy_buffer_to_buffer(&kernel.pixels, 0, staging, 0, size);
+            self.gpu.queue.submit([encoder.finish()]);
+        }
+        let slice = kernel.staging.as_ref().unwrap_or(&kernel.pixels).slice(..size);
+        let (sender, receiver) = std::sync::mpsc::channel();
+        slice.map_async(wgpu::MapMode::Read, move |result| {
+            // The receiver outlives the wait below; if it is gone, so is the interest in the result.
+            let _ = sender.send(result);
+        });
+        self.gpu.wait()?;
+        let lost = |why: String| Error::Lost(format!("reading back from {}: {why}", self.gpu.info));
+        receiver.recv().map_err(|e| lost(e.to_string()))?.map_err(|e| lost(e.to_string()))?;
+        let not_finite = {
+            let view = slice.get_mapped_range().map_err(|e| lost(e.to_string()))?;
+            place_tiles(bytemuck::cast_slice(&view), tiles, first, self.width, rgb)
+        };
+        kernel.staging.as_ref().unwrap_or(&kernel.pixels).unmap();
+        self.times.read_back += start.elapsed();
+        Ok(not_finite)
+    }
+
+    /// Sizes the next dispatch by the last one's time, growing by a factor of 8 at most.
+    fn set_pace(&mut self, tiles: usize, took: Duration) {
+        let factor = (TARGET_DISPATCH.as_secs_f64() / took.as_secs_f64().max(1e-9)).min(8.0);
+        self.tiles_per_dispatch = ((tiles as f64 * factor) as u32).clamp(1, MAX_DISPATCH_TILES);
+    }
+}
+
+impl Kernel {
+    fn new(gpu: &Gpu, pipeline: wgpu::ComputePipeline, packed: &Packed, capacity: u32) -> Self {
+        let device = &gpu.device;
+        let filled = |contents: &[u8], usage| {
+            // A binding of size 0 is not allowed; the kernel never reads past the counts.
+            let contents = if contents.is_empty() { &[0; 64] } else { contents };
+            device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
+        };
+        let empty = |size, usage| {
+            device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
+        };
+        let storage = wgpu::BufferUsages::STORAGE;
+        let params = filled(
+            bytemuck::bytes_of(&packed.params),
+            wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        );
+        let tiles = empty(u64::from(capacity) * 8, storage | wgpu::BufferUsages::COPY_DST);
+        let pixel_bytes = u64::from(capacity) * TILE_PIXELS as u64 * 4;
+        let read = wgpu::BufferUsages::MAP_READ;
+        let pixels = empty(pixel_bytes, storage | if gpu.mappable { read } else { wgpu::BufferUsages::COPY_SRC });
+        let staging = (!gpu.mappable).then(|| empty(pixel_bytes, read | wgpu::BufferUsages::COPY_DST));
+        let inputs = [
+            filled(bytemuck::cast_slice(&packed.shapes), storage),
+            filled(bytemuck::cast_slice(&packed.materials), storage),
+            filled(bytemuck::cast_slice(&packed.lights), storage),
+            filled(bytemuck::cast_slice(&packed.columns), storage),
+            filled(bytemuck::cast_slice(&packed.rows), storage),
+        ];
+        let buffers = [&params].into_iter().chain(&inputs).chain([&tiles, &pixels]);
+        let entries: Vec<_> = buffers
+            .enumerate()
+            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding: binding as u32, resource: buffer.as_entire_binding() })
+            .collect();
+        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &entries,
+        });
+        Self { pipeline, bind_group, params, tiles, pixels, staging, capacity }
+    }
+}
+
+/// Refuses a scene whose buffers are larger than the device's bindings.
+fn check_fits(gpu: &Gpu, packed: &Packed) -> Result<(), Error> {
+    let sizes = [
+        ("spheres", size_of_val(&packed.materials[..]).max(size_of_val(&packed.shapes[..]))),
+        ("lights", size_of_val(&packed.lights[..])),
+        ("columns", size_of_val(&packed.columns[..])),
+        ("rows", size_of_val(&packed.rows[..])),
+    ];
+    let limit = gpu.info.max_storage_binding.min(gpu.info.max_buffer);
+    match sizes.iter().find(|(_, size)| *size as u64 > limit) {
+        None => Ok(()),
+        Some((what, size)) => Err(Error::NoDevice(format!(
+            "the {what} of this scene take {size} bytes, but {} binds {limit} at the most; `--device cpu` has no such limit",
+            gpu.info
+        ))),
+    }
+}
+
+/// Copies pixels in tile order to their places in rows; returns how many are not finite.
+fn place_tiles(pixels: &[u32], tiles: &[[u32; 2]], first: u32, width: u32, rgb: &mut [u8]) -> u64 {
+    let row_bytes = width as usize * 3;
+    let tile_row_bytes = row_bytes * TILE as usize;
+    let place_row = |(tile_row, band): (usize, &mut [u8])| {
+        let y = first + tile_row as u32 * TILE;
+        let start = tiles.partition_point(|tile| tile[1] < y);
+        let end = tiles.partition_point(|tile| tile[1] <= y);
+        let mut not_finite = 0;
+        for (tile, pixels) in tiles[start..end].iter().zip(pixels[start * TILE_PIXELS..].chunks(TILE_PIXELS)) {
+            let across = TILE.min(width - tile[0]) as usize;
+            for (row, pixels) in band.chunks_mut(row_bytes).zip(pixels.chunks(TILE as usize)) {
+                let row = &mut row[tile[0] as usize * 3..][..across * 3];
+                for (target, pixel) in row.as_chunks_mut::<3>().0.iter_mut().zip(pixels) {
+                    let [r, g, b, status] = pixel.to_le_bytes();
+                    *target = [r, g, b];
+                    not_finite += u64::from(status != 0);
+                }
+            }
+        }
+        not_finite
+    };
+    rgb.par_chunks_mut(tile_row_bytes).enumerate().map(place_row).sum()
+}

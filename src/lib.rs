@@ -1,0 +1,17 @@
+//! Ray tracer for scenes of spheres and ellipsoids: a WGSL compute shader on any Vulkan device, checked against a CPU
+//! reference.
+//!
+//! The data walk: scene text → [`scene::Scene`] → [`effects::Effects`] → packed buffers → composed WGSL and constants →
+//! dispatch → rows of pixels → file. `cpu` and `gpu` never see each other; both read [`scene`], [`effects`], [`camera`]
+//! and [`geometry`].
+
+pub mod camera;
+pub mod compare;
+pub mod cpu;
+pub mod effects;
+pub mod film;
+pub mod geometry;
+pub mod gpu;
+pub mod scene;
+pub mod settings;
+pub mod tiles;

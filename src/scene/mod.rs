@@ -1,0 +1,11 @@
+//! What a scene file says: the model, the parser and its diagnostics.
+//!
+//! This module knows nothing of rendering; every number is kept as the `f64` that the text names.
+
+mod diagnostics;
+mod model;
+mod parse;
+
+pub use diagnostics::{Diagnostic, Omitted, Severity};
+pub use model::{Light, MAX_RESOLUTION, Names, Scene, Sphere, Window};
+pub use parse::{Parsed, parse};

@@ -1,0 +1,114 @@
+//! The scene as the file states it.
+
+use glam::DVec3;
+
+/// The greatest accepted `RES` value per axis: pixel numbers up to here are exact in `f32`.
+pub const MAX_RESOLUTION: u32 = 1 << 24;
+
+/// A whole scene: what is seen, from where, and where the picture goes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// The window on the image plane through which the eye at the origin looks down −Z.
+    pub window: Window,
+    /// Picture width in pixels (columns), 1 to [`MAX_RESOLUTION`].
+    pub width: u32,
+    /// Picture height in pixels (rows), 1 to [`MAX_RESOLUTION`].
+    pub height: u32,
+    /// Spheres in the order of the file; the index of a sphere is its place here.
+    pub spheres: Vec<Sphere>,
+    /// The label of each sphere, same order as `spheres`.
+    pub sphere_names: Names,
+    /// Point lights in the order of the file.
+    pub lights: Vec<Light>,
+    /// The label of each light, same order as `lights`.
+    pub light_names: Names,
+    /// `BACK`: the colour of a primary ray that hits nothing.
+    pub background: DVec3,
+    /// `AMBIENT`: the ambient intensity.
+    pub ambient: DVec3,
+    /// `OUTPUT` as written in the file, if it is there.
+    pub output: Option<String>,
+}
+
+/// The window `LEFT RIGHT BOTTOM TOP` on the image plane z = −`near`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Window {
+    /// Distance of the image plane, > 0.
+    pub near: f64,
+    /// x of the left edge of column 0.
+    pub left: f64,
+    /// x of the right edge of the last column; ≠ `left`.
+    pub right: f64,
+    /// y of the bottom edge of the last row; ≠ `top`.
+    pub bottom: f64,
+    /// y of the top edge of row 0.
+    pub top: f64,
+}
+
+/// One `SPHERE` line: the unit sphere, scaled by `scale`, then moved to `center`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sphere {
+    /// Centre (px, py, pz).
+    pub center: DVec3,
+    /// Semi-axes (sx, sy, sz); never zero, a negative one means its absolute value.
+    pub scale: DVec3,
+    /// Object colour (r, g, b), usually within 0..=1.
+    pub color: DVec3,
+    /// Ambient coefficient Ka.
+    pub ka: f64,
+    /// Diffuse coefficient Kd.
+    pub kd: f64,
+    /// Specular coefficient Ks.
+    pub ks: f64,
+    /// Reflection coefficient Kr.
+    pub kr: f64,
+    /// Specular exponent n, ≥ 0.
+    pub n: f64,
+    /// Transmission coefficient Kt; 0 where the line does not carry the refraction extension.
+    pub kt: f64,
+    /// Index of refraction of the inside relative to the outside, > 0; 1 where the line does not carry it.
+    pub eta: f64,
+}
+
+/// One `LIGHT` line: a point light.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Light {
+    /// Position (px, py, pz).
+    pub position: DVec3,
+    /// Intensity (Ir, Ig, Ib).
+    pub intensity: DVec3,
+}
+
+/// Labels in one allocation, so that millions of them stay cheap.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Names {
+    text: String,
+    ends: Vec<u64>,
+}
+
+impl Names {
+    /// Appends one label.
+    pub fn push(&mut self, name: &str) {
+        self.text.push_str(name);
+        self.ends.push(self.text.len() as u64);
+    }
+
+    /// The label at `index`, or `""` past the end.
+    pub fn get(&self, index: usize) -> &str {
+        let Some(&end) = self.ends.get(index) else {
+            return "";
+        };
+        let start = if index == 0 { 0 } else { self.ends[index - 1] };
+        &self.text[start as usize..end as usize]
+    }
+
+    /// How many labels there are.
+    pub fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.ends.is_empty()
+    }
+}

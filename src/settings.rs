@@ -1,0 +1,119 @@
+//! What decides the picture besides the scene: conventions, depth, samples.
+
+use glam::DVec3;
+use serde::Serialize;
+
+/// Where in its pixel a sample lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Sampling {
+    /// The top-left corner, offsets (0, 0): what the official pictures pin.
+    Corner,
+    /// The bottom-left corner, offsets (0, 1): the second most common course template.
+    BottomLeft,
+    /// The centre, offsets (½, ½).
+    Center,
+}
+
+impl Sampling {
+    /// Offsets (sx, sy) within the pixel, x to the right and y downwards, each in 0..=1.
+    pub fn offset(self) -> (f64, f64) {
+        match self {
+            Self::Corner => (0.0, 0.0),
+            Self::BottomLeft => (0.0, 1.0),
+            Self::Center => (0.5, 0.5),
+        }
+    }
+}
+
+/// How a colour in 0..=1 becomes an 8-bit level.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Quantize {
+    /// ⌊255·c⌋.
+    Truncate,
+    /// ⌊255·c + ½⌋.
+    Round,
+}
+
+impl Quantize {
+    /// What is added to 255·c before the fraction is cut off.
+    pub fn bias(self) -> f64 {
+        match self {
+            Self::Truncate => 0.0,
+            Self::Round => 0.5,
+        }
+    }
+
+    /// The 8-bit RGB of an unclamped colour; NaN becomes 0.
+    pub fn levels(self, color: DVec3) -> [u8; 3] {
+        color.to_array().map(|c| (255.0 * c.clamp(0.0, 1.0) + self.bias()) as u8)
+    }
+}
+
+/// How shadow and reflection rays avoid the surface that they leave.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Secondary {
+    /// Every sphere counts from t > epsilon on, the own one included.
+    Epsilon(f64),
+    /// The own sphere counts by its analytic other root, every other one from t > 0 on.
+    SkipSelf,
+}
+
+/// The specular term.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Specular {
+    /// (R·V)ⁿ with R = 2(N·L)N − L.
+    Phong,
+    /// (N·H)ⁿ with H = (L + V)/|L + V|.
+    Blinn,
+}
+
+/// Everything besides the scene that a picture depends on.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Settings {
+    /// Sample position within the pixel.
+    pub sampling: Sampling,
+    /// Rounding of the 8-bit value.
+    pub quantize: Quantize,
+    /// Self-hit rule of shadow and reflection rays.
+    pub secondary: Secondary,
+    /// Specular term.
+    pub specular: Specular,
+    /// Greatest number of reflection bounces, 0 to [`Settings::MAX_DEPTH`].
+    pub max_depth: u32,
+}
+
+impl Settings {
+    /// The greatest accepted `max_depth`; beyond some tens of bounces nothing is left of a ray's weight or accuracy.
+    pub const MAX_DEPTH: u32 = 1000;
+
+    /// The convention that the official pictures pin.
+    pub fn classic() -> Self {
+        Self {
+            sampling: Sampling::Corner,
+            quantize: Quantize::Truncate,
+            secondary: Secondary::Epsilon(1e-3),
+            specular: Specular::Phong,
+            max_depth: 3,
+        }
+    }
+
+    /// The convention that the physics asks for.
+    pub fn exact() -> Self {
+        Self {
+            sampling: Sampling::Center,
+            quantize: Quantize::Round,
+            secondary: Secondary::SkipSelf,
+            ..Self::classic()
+        }
+    }
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self::classic()
+    }
+}
