@@ -23,4 +23,7 @@ fn render_tiles(
 ) {
     let pixel = tiles[params.first_tile + group.x] + local.xy;
     pixels[group.x * 64u + index] = packed_pixel(trace(primary_ray(pixel)));
+    if COUNT_RAYS {
+        ray_counts[group.x * 64u + index] = min(shadow_rays, 0xffffu) | (min(reflection_rays, 0xffffu) << 16u);
+    }
 }

@@ -80,8 +80,13 @@ fn local_color(surface: Surface) -> vec3r {
             if !(n_dot_l > 0.0) {
                 continue;
             }
-            if SHADOWS && any_hit(shadow_ray, surface.own) {
-                continue;
+            if SHADOWS {
+                if COUNT_RAYS {
+                    shadow_rays++;
+                }
+                if any_hit(shadow_ray, surface.own) {
+                    continue;
+                }
             }
             if DIFFUSE {
                 color += light.intensity * material.color * (material.kd * n_dot_l);

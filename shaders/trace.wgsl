@@ -35,6 +35,9 @@ fn trace(primary: Ray) -> vec3r {
         throughput *= kr;
         ray = reflection_ray(surface);
         own = surface.own;
+        if COUNT_RAYS {
+            reflection_rays++;
+        }
         hit = nearest_hit(ray, own, secondary_range());
     }
     return color;

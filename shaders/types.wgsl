@@ -57,6 +57,11 @@ struct Light {
 @group(0) @binding(6) var<storage, read> tiles: array<vec2<u32>>;
 // One pixel of this dispatch each, tile by tile: red, green, blue in the low bytes, status in the high one.
 @group(0) @binding(7) var<storage, read_write> pixels: array<u32>;
+// With COUNT_RAYS, the shadow rays (low half) and reflection rays (high half) of each of those pixels.
+@group(0) @binding(8) var<storage, read_write> ray_counts: array<u32>;
+
+var<private> shadow_rays: u32;
+var<private> reflection_rays: u32;
 
 fn sphere_count() -> u32 {
     if SPHERE_COUNT > 0u {

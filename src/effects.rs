@@ -202,7 +202,8 @@ impl Effects {
             (Effect::Specular, needs.specular()),
         ];
         let lit = findings[1].1.is_ok() || findings[2].1.is_ok();
-        findings.push((Effect::Shadows, if lit { needs.shadows() } else { Err("no surface is lit by a light".into()) }));
+        findings
+            .push((Effect::Shadows, if lit { needs.shadows() } else { Err("no surface is lit by a light".into()) }));
         findings.push((Effect::Reflections, reflections));
         findings.push((Effect::Shells, needs.shells()));
         findings.push((Effect::Ellipsoids, needs.ellipsoids()));
@@ -219,9 +220,7 @@ impl Effects {
         let set = match request {
             Request::Auto => return effects,
             Request::Exactly(set) => *set,
-            Request::Changed(changes) => {
-                changes.iter().fold(effects.set, |set, &(effect, on)| set.with(effect, on))
-            }
+            Request::Changed(changes) => changes.iter().fold(effects.set, |set, &(effect, on)| set.with(effect, on)),
         };
         for row in &mut effects.rows {
             let on = set.has(row.effect);
@@ -325,7 +324,8 @@ impl<'a> Needs<'a> {
                 if !self.clear_of_itself(receiver, light) {
                     return Ok(format!("{} is too far away for its own shadow to be ruled out", self.name(r)));
                 }
-                let blocker = spheres.iter().enumerate().find(|&(b, blocker)| b != r && may_block(light, receiver, blocker));
+                let blocker =
+                    spheres.iter().enumerate().find(|&(b, blocker)| b != r && may_block(light, receiver, blocker));
                 if let Some((b, _)) = blocker {
                     let light = self.scene.light_names.get(l);
                     return Ok(format!("{} may stand between light '{light}' and {}", self.name(b), self.name(r)));

@@ -6,9 +6,11 @@
 //! and [`geometry`].
 
 pub mod camera;
+pub mod cli;
 pub mod compare;
 pub mod cpu;
 pub mod effects;
+pub mod engine;
 pub mod film;
 pub mod geometry;
 pub mod gpu;

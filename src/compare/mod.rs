@@ -2,6 +2,7 @@
 //!
 //! The *level difference* of two pixels is the greatest absolute difference over their three channels, 0 to 255.
 
+mod explain;
 mod heatmap;
 mod resemblance;
 
@@ -11,6 +12,7 @@ use serde::Serialize;
 
 use crate::film::Picture;
 
+pub use explain::{Explanation, UnexplainedPixel};
 pub use heatmap::{Band, SCALE, heatmap, three_wide};
 pub use resemblance::{Resemblance, ResemblanceKind};
 

@@ -54,17 +54,6 @@ impl Decision {
     }
 }
 
-/// What the reference says of a pixel of another renderer.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict {
-    /// The levels are the reference's.
-    Same,
-    /// They differ, and this is the first decision on the path within its margin.
-    Explained(Decision),
-    /// They differ, and no decision comes near enough.
-    Unexplained,
-}
-
 /// Judges the pixels of a renderer whose scalar has a given unit roundoff.
 #[derive(Debug, Clone, Copy)]
 pub struct Judge {
@@ -77,24 +66,16 @@ impl Judge {
     /// For a renderer in `f64`: u = 2⁻⁵².
     pub const DOUBLE: Self = Self { unit_roundoff: 1.0 / (1u64 << 52) as f64 };
 
-    /// The verdict on `level`, another renderer's 8-bit value of pixel (column `i`, row `j`).
-    pub fn pixel(&self, reference: &Reference<f64>, i: u32, j: u32, level: [u8; 3]) -> Verdict {
+    /// The decision that explains `level`, another renderer's 8-bit value of pixel (column `i`, row `j`) that differs from
+    /// the reference's: the first on the pixel's path that comes within its margin. `None`: the pixel is unexplained.
+    pub fn explain(&self, reference: &Reference<f64>, i: u32, j: u32, level: [u8; 3]) -> Option<Decision> {
         let mut cone = Cone::new(self.unit_roundoff);
         let color = trace(&reference.world, reference.primary_ray(i, j), &mut cone).to_f64();
-        if reference.quantize.levels(color) == level {
-            return Verdict::Same;
-        }
-        if let Some(decision) = cone.decision {
-            return Verdict::Explained(decision);
-        }
         let error = cone.color + color.abs() * (STEPS * self.unit_roundoff);
         let low = reference.quantize.levels(color - error);
         let high = reference.quantize.levels(color + error);
-        if (0..3).all(|c| (low[c]..=high[c]).contains(&level[c])) {
-            Verdict::Explained(Decision::QuantisationStep)
-        } else {
-            Verdict::Unexplained
-        }
+        let within_step = (0..3).all(|c| (low[c]..=high[c]).contains(&level[c]));
+        cone.decision.or(within_step.then_some(Decision::QuantisationStep))
     }
 }
 
@@ -173,7 +154,9 @@ impl Cone {
             let is_hit = hit.is_some_and(|hit| hit.sphere == sphere);
             if let Some(own) = own.filter(|own| own.shape == shape.index) {
                 let t = exit_root(own, ray.direction, shape);
-                if own.inside && !is_hit && (t - t_end).abs() <= self.width(world, ray, sphere, t) / length(ray.direction)
+                if own.inside
+                    && !is_hit
+                    && (t - t_end).abs() <= self.width(world, ray, sphere, t) / length(ray.direction)
                 {
                     self.note(at_end);
                 }

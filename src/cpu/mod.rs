@@ -10,6 +10,6 @@ mod trace;
 mod vec3;
 mod witness;
 
-pub use margin::{Decision, Judge, Verdict};
+pub use margin::{Decision, Judge};
 pub use real::Real;
-pub use render::Reference;
+pub use render::{Reference, Tally};

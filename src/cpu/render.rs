@@ -3,11 +3,12 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::intersect::Ray;
+use super::intersect::{Own, Ray};
 use super::real::Real;
 use super::scene::World;
 use super::trace::trace;
 use super::vec3::Vec3;
+use super::witness::Witness;
 use crate::camera::Camera;
 use crate::effects::Effects;
 use crate::scene::Scene;
@@ -41,26 +42,59 @@ impl<T: Real> Reference<T> {
         trace(&self.world, self.primary_ray(i, j), &mut ()).to_f64()
     }
 
-    /// The 8-bit RGB rows `first` to `first + count`, and how many of their pixels are not finite.
-    pub fn rows(&self, first: u32, count: u32) -> (Vec<u8>, u64) {
-        let width = self.camera.width() as usize;
-        let mut rgb = vec![0; width * count as usize * 3];
+    /// Renders whole rows from row `first` on into `rgb`, 3 bytes a pixel, in parallel.
+    pub fn rows(&self, first: u32, rgb: &mut [u8]) -> Tally {
         // A few hundred pixels a task balance the load and keep the cost of a task invisible.
         const CHUNK: usize = 256;
-        let not_finite = rgb
-            .par_chunks_mut(CHUNK * 3)
-            .enumerate()
-            .map(|(chunk, pixels)| {
-                let mut not_finite = 0;
-                for (k, pixel) in pixels.chunks_exact_mut(3).enumerate() {
-                    let index = chunk * CHUNK + k;
-                    let color = self.color((index % width) as u32, first + (index / width) as u32);
-                    not_finite += u64::from(!color.is_finite());
-                    pixel.copy_from_slice(&self.quantize.levels(color));
-                }
-                not_finite
-            })
-            .sum();
-        (rgb, not_finite)
+        let width = self.camera.width() as usize;
+        let chunk = |(chunk, pixels): (usize, &mut [u8])| {
+            let mut tally = Tally::default();
+            for (k, pixel) in pixels.as_chunks_mut::<3>().0.iter_mut().enumerate() {
+                let index = chunk * CHUNK + k;
+                let ray = self.primary_ray((index % width) as u32, first + (index / width) as u32);
+                let color = trace(&self.world, ray, &mut tally).to_f64();
+                tally.primary += 1;
+                tally.not_finite += u64::from(!color.is_finite());
+                *pixel = self.quantize.levels(color);
+            }
+            tally
+        };
+        rgb.par_chunks_mut(CHUNK * 3).enumerate().map(chunk).reduce(Tally::default, Tally::plus)
+    }
+}
+
+/// What rendering some rows came to.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Pixels whose colour is not finite.
+    pub not_finite: u64,
+    /// Rays from the eye.
+    pub primary: u64,
+    /// Rays towards lights.
+    pub shadow: u64,
+    /// Reflected rays.
+    pub reflection: u64,
+}
+
+impl Tally {
+    /// The sum of two tallies.
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            not_finite: self.not_finite + other.not_finite,
+            primary: self.primary + other.primary,
+            shadow: self.shadow + other.shadow,
+            reflection: self.reflection + other.reflection,
+        }
+    }
+}
+
+impl<T: Real> Witness<T> for Tally {
+    fn shadow(&mut self, _world: &World<T>, _ray: &Ray<T>, _own: Option<&Own<T>>) {
+        self.shadow += 1;
+    }
+
+    fn reflected(&mut self, _throughput: T) {
+        self.reflection += 1;
     }
 }

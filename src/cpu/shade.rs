@@ -67,11 +67,7 @@ pub(crate) fn light_terms<T: Real>(
 }
 
 /// Colour of a surface point without its reflection.
-pub(crate) fn local_color<T: Real, W: Witness<T>>(
-    world: &World<T>,
-    surface: &Surface<T>,
-    witness: &mut W,
-) -> Vec3<T> {
+pub(crate) fn local_color<T: Real, W: Witness<T>>(world: &World<T>, surface: &Surface<T>, witness: &mut W) -> Vec3<T> {
     let material = &world.materials[surface.sphere];
     let mut color = world.ambient * material.color * material.ka;
     for light in &world.lights {

@@ -8,7 +8,15 @@ use super::shade::Surface;
 /// Sees every decision that the tracer takes, in order.
 pub(crate) trait Witness<T: Real> {
     /// The search for the nearest hit has ended.
-    fn nearest(&mut self, _world: &World<T>, _ray: &Ray<T>, _own: Option<&Own<T>>, _range: &Range<T>, _hit: Option<&Hit<T>>) {}
+    fn nearest(
+        &mut self,
+        _world: &World<T>,
+        _ray: &Ray<T>,
+        _own: Option<&Own<T>>,
+        _range: &Range<T>,
+        _hit: Option<&Hit<T>>,
+    ) {
+    }
     /// The surface of the hit is known.
     fn surface(&mut self, _world: &World<T>, _ray: &Ray<T>, _hit: &Hit<T>, _surface: &Surface<T>) {}
     /// N·L of a light is known; only a positive one lights.

@@ -154,7 +154,7 @@ impl Gpu {
     pub fn open(choice: &Choice) -> Result<Self, Error> {
         let (_instance, adapters) = adapters()?;
         let index = choose(choice, adapters.iter().map(|(info, _)| info))?;
-        let (info, adapter) = adapters.into_iter().nth(index).ok_or_else(|| no_devices(""))?;
+        let (info, adapter) = adapters.into_iter().nth(index).ok_or_else(Error::none_found)?;
         Self::open_adapter(info, &adapter)
     }
 
@@ -202,10 +202,8 @@ impl Gpu {
 
     /// Hands the composed text to the driver.
     pub(super) fn shader_module(&self, module: &Module) -> Result<wgpu::ShaderModule, Error> {
-        let descriptor = wgpu::ShaderModuleDescriptor {
-            label: None,
-            source: wgpu::ShaderSource::Wgsl(module.text.as_str().into()),
-        };
+        let descriptor =
+            wgpu::ShaderModuleDescriptor { label: None, source: wgpu::ShaderSource::Wgsl(module.text.as_str().into()) };
         self.checked("reading the shader", || {
             #[allow(
                 unsafe_code,
@@ -223,18 +221,11 @@ fn note(slot: &Mutex<Option<String>>, message: String) {
     slot.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(message);
 }
 
-fn no_devices(which: &str) -> Error {
-    Error::NoDevice(format!(
-        "no Vulkan device{which} was found. A software one is in Debian's package mesa-vulkan-drivers; \
-         `--device cpu` renders without any"
-    ))
-}
-
 /// The index of the device that `choice` and the environment mean.
 fn choose<'a>(choice: &Choice, devices: impl Iterator<Item = &'a DeviceInfo>) -> Result<usize, Error> {
     let devices: Vec<_> = devices.collect();
     if devices.is_empty() {
-        return Err(no_devices(""));
+        return Err(Error::none_found());
     }
     let listing = || devices.iter().map(|d| format!("\n  {}: {d}", d.index)).collect::<String>();
     let named = |name: &str, source: &str| -> Result<Vec<&DeviceInfo>, Error> {
@@ -264,7 +255,7 @@ fn choose<'a>(choice: &Choice, devices: impl Iterator<Item = &'a DeviceInfo>) ->
             };
             let low_power = wgpu::PowerPreference::from_env() == Some(wgpu::PowerPreference::LowPower);
             let best = candidates.iter().min_by_key(|device| device.rank(low_power));
-            best.map(|device| device.index).ok_or_else(|| no_devices(""))
+            best.map(|device| device.index).ok_or_else(Error::none_found)
         }
     }
 }

@@ -11,6 +11,17 @@ pub enum Error {
     Lost(String),
 }
 
+impl Error {
+    /// There is no Vulkan device at all.
+    pub fn none_found() -> Self {
+        Self::NoDevice(
+            "no Vulkan device was found. Debian's package mesa-vulkan-drivers has a software one; `--device cpu` renders \
+             without any"
+                .into(),
+        )
+    }
+}
+
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -5,6 +5,7 @@ mod error;
 pub mod layout;
 mod pack;
 mod pipeline;
+mod readable;
 mod render;
 mod shader;
 

@@ -23,6 +23,8 @@ pub struct Specialisation {
     pub sphere_count: u32,
     /// Number of lights, or 0 where the kernel reads it from the parameters.
     pub light_count: u32,
+    /// Whether each pixel also says how many rays it took.
+    pub count_rays: bool,
 }
 
 impl Specialisation {
@@ -35,6 +37,7 @@ impl Specialisation {
             blinn: settings.specular == Specular::Blinn,
             sphere_count: constant(scene.spheres.len()),
             light_count: constant(scene.lights.len()),
+            count_rays: false,
         }
     }
 
@@ -51,6 +54,7 @@ impl Specialisation {
             ("ELLIPSOIDS", on(Effect::Ellipsoids)),
             ("SKIP_SELF", f64::from(self.skip_self)),
             ("BLINN", f64::from(self.blinn)),
+            ("COUNT_RAYS", f64::from(self.count_rays)),
             ("SPHERE_COUNT", f64::from(self.sphere_count)),
             ("LIGHT_COUNT", f64::from(self.light_count)),
         ]

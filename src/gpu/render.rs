@@ -10,6 +10,7 @@ use super::error::Error;
 use super::layout::Params;
 use super::pack::Packed;
 use super::pipeline::{Specialisation, compile};
+use super::readable::Readable;
 use crate::camera::Camera;
 use crate::effects::{Effect, Effects};
 use crate::scene::Scene;
@@ -54,6 +55,8 @@ pub struct GpuRenderer<'a> {
     kernel_inputs: Inputs,
     tiles_per_dispatch: u32,
     times: DeviceTimes,
+    /// Shadow and reflection rays so far, where they are counted.
+    rays: [u64; 2],
 }
 
 /// Everything that is needed to build the kernel once a tile asks for it.
@@ -70,9 +73,8 @@ struct Kernel {
     bind_group: wgpu::BindGroup,
     params: wgpu::Buffer,
     tiles: wgpu::Buffer,
-    pixels: wgpu::Buffer,
-    /// Where the pixels are copied for reading, unless they can be mapped where they are.
-    staging: Option<wgpu::Buffer>,
+    pixels: Readable,
+    ray_counts: Readable,
     /// Tiles that the buffers hold.
     capacity: u32,
 }
@@ -97,12 +99,24 @@ impl<'a> GpuRenderer<'a> {
             kernel_inputs: Inputs { packed, specialisation: Specialisation::new(scene, settings, effects.set) },
             tiles_per_dispatch: first.clamp(1, u64::from(MAX_DISPATCH_TILES)) as u32,
             times: DeviceTimes::default(),
+            rays: [0; 2],
         })
     }
 
     /// Times of the work so far.
     pub fn times(&self) -> DeviceTimes {
         self.times
+    }
+
+    /// Counts rays from now on; before the first row only.
+    pub fn count_rays(&mut self) {
+        self.kernel_inputs.specialisation.count_rays = true;
+    }
+
+    /// Primary, shadow and reflection rays so far; `None` where they are not counted.
+    pub fn rays(&self) -> Option<[u64; 3]> {
+        let primary = self.times.tiles * TILE_PIXELS as u64;
+        self.kernel_inputs.specialisation.count_rays.then_some([primary, self.rays[0], self.rays[1]])
     }
 
     /// Renders rows `first` on (a multiple of [`TILE`]) into `rgb`, whole rows of 3 bytes a pixel; returns how many pixels
@@ -119,12 +133,13 @@ impl<'a> GpuRenderer<'a> {
         while !rest.is_empty() {
             let kernel = match self.kernel.take() {
                 Some(kernel) => kernel,
-                None => self.build_kernel(tiles.len())?,
+                None => self.build_kernel()?,
             };
             let limit = self.gpu.info.max_workgroups.min(kernel.capacity).min(self.tiles_per_dispatch);
             let (now, later) = rest.split_at(rest.len().min(limit as usize));
             let took = self.dispatch(&kernel, now)?;
             not_finite += self.read_back(&kernel, now, first, rgb)?;
+            self.add_rays(&kernel, now.len())?;
             self.kernel = Some(kernel);
             self.set_pace(now.len(), took);
             rest = later;
@@ -133,15 +148,17 @@ impl<'a> GpuRenderer<'a> {
     }
 
     /// Compiles the pipeline and runs it once, since drivers finish compiling at the first dispatch.
-    fn build_kernel(&mut self, tiles: usize) -> Result<Kernel, Error> {
+    fn build_kernel(&mut self) -> Result<Kernel, Error> {
         let start = Instant::now();
         let gpu = self.gpu;
         let Inputs { packed, specialisation } = &self.kernel_inputs;
         let pipeline = compile(gpu, specialisation)?;
-        let capacity = (tiles as u32).min(MAX_DISPATCH_TILES).min(gpu.info.max_workgroups);
-        let kernel = gpu.checked("reserving buffers", || Kernel::new(gpu, pipeline, packed, capacity))?;
-        let tile = self.cover.tiles(0, u32::MAX).first().copied().unwrap_or_default();
-        self.submit(&kernel, &[tile])?;
+        // No band has more tiles than the picture.
+        let picture = (packed.columns.len() as u64 / u64::from(TILE)) * (packed.rows.len() as u64 / u64::from(TILE));
+        let capacity = picture.min(u64::from(MAX_DISPATCH_TILES.min(gpu.info.max_workgroups))) as u32;
+        let count_rays = specialisation.count_rays;
+        let kernel = gpu.checked("reserving buffers", || Kernel::new(gpu, pipeline, packed, capacity, count_rays))?;
+        self.submit(&kernel, &[[0, 0]])?;
         self.times.compile = start.elapsed();
         Ok(kernel)
     }
@@ -175,28 +192,23 @@ impl<'a> GpuRenderer<'a> {
     /// Puts the pixels of `tiles` into `rgb`, whose first row is `first`.
     fn read_back(&mut self, kernel: &Kernel, tiles: &[[u32; 2]], first: u32, rgb: &mut [u8]) -> Result<u64, Error> {
         let start = Instant::now();
-        let size = (tiles.len() * TILE_PIXELS * 4) as u64;
-        if let Some(staging) = &kernel.staging {
-            let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            encoder.copy_buffer_to_buffer(&kernel.pixels, 0, staging, 0, size);
-            self.gpu.queue.submit([encoder.finish()]);
-        }
-        let slice = kernel.staging.as_ref().unwrap_or(&kernel.pixels).slice(..size);
-        let (sender, receiver) = std::sync::mpsc::channel();
-        slice.map_async(wgpu::MapMode::Read, move |result| {
-            // The receiver outlives the wait below; if it is gone, so is the interest in the result.
-            let _ = sender.send(result);
-        });
-        self.gpu.wait()?;
-        let lost = |why: String| Error::Lost(format!("reading back from {}: {why}", self.gpu.info));
-        receiver.recv().map_err(|e| lost(e.to_string()))?.map_err(|e| lost(e.to_string()))?;
-        let not_finite = {
-            let view = slice.get_mapped_range().map_err(|e| lost(e.to_string()))?;
-            place_tiles(bytemuck::cast_slice(&view), tiles, first, self.width, rgb)
-        };
-        kernel.staging.as_ref().unwrap_or(&kernel.pixels).unmap();
+        let width = self.width;
+        let place = |pixels: &[u32]| place_tiles(pixels, tiles, first, width, rgb);
+        let not_finite = kernel.pixels.read(self.gpu, tiles.len() * TILE_PIXELS, place)?;
         self.times.read_back += start.elapsed();
         Ok(not_finite)
+    }
+
+    /// Adds up the ray counts of the last dispatch of so many tiles.
+    fn add_rays(&mut self, kernel: &Kernel, tiles: usize) -> Result<(), Error> {
+        if self.kernel_inputs.specialisation.count_rays {
+            let sum = |counts: &[u32]| {
+                counts.iter().fold([0, 0], |[s, r], count| [s + u64::from(count & 0xffff), r + u64::from(count >> 16)])
+            };
+            let [shadow, reflection] = kernel.ray_counts.read(self.gpu, tiles * TILE_PIXELS, sum)?;
+            self.rays = [self.rays[0] + shadow, self.rays[1] + reflection];
+        }
+        Ok(())
     }
 
     /// Sizes the next dispatch by the last one's time, growing by a factor of 8 at most.
@@ -207,7 +219,7 @@ impl<'a> GpuRenderer<'a> {
 }
 
 impl Kernel {
-    fn new(gpu: &Gpu, pipeline: wgpu::ComputePipeline, packed: &Packed, capacity: u32) -> Self {
+    fn new(gpu: &Gpu, pipeline: wgpu::ComputePipeline, packed: &Packed, capacity: u32, count_rays: bool) -> Self {
         let device = &gpu.device;
         let filled = |contents: &[u8], usage| {
             // A binding of size 0 is not allowed; the kernel never reads past the counts.
@@ -218,15 +230,12 @@ impl Kernel {
             device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
         };
         let storage = wgpu::BufferUsages::STORAGE;
-        let params = filled(
-            bytemuck::bytes_of(&packed.params),
-            wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-        );
+        let params =
+            filled(bytemuck::bytes_of(&packed.params), wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST);
         let tiles = empty(u64::from(capacity) * 8, storage | wgpu::BufferUsages::COPY_DST);
-        let pixel_bytes = u64::from(capacity) * TILE_PIXELS as u64 * 4;
-        let read = wgpu::BufferUsages::MAP_READ;
-        let pixels = empty(pixel_bytes, storage | if gpu.mappable { read } else { wgpu::BufferUsages::COPY_SRC });
-        let staging = (!gpu.mappable).then(|| empty(pixel_bytes, read | wgpu::BufferUsages::COPY_DST));
+        let values = u64::from(capacity) * TILE_PIXELS as u64;
+        let pixels = Readable::new(gpu, values);
+        let ray_counts = Readable::new(gpu, if count_rays { values } else { 1 });
         let inputs = [
             filled(bytemuck::cast_slice(&packed.shapes), storage),
             filled(bytemuck::cast_slice(&packed.materials), storage),
@@ -234,17 +243,20 @@ impl Kernel {
             filled(bytemuck::cast_slice(&packed.columns), storage),
             filled(bytemuck::cast_slice(&packed.rows), storage),
         ];
-        let buffers = [&params].into_iter().chain(&inputs).chain([&tiles, &pixels]);
+        let buffers = [&params].into_iter().chain(&inputs).chain([&tiles, &pixels.buffer, &ray_counts.buffer]);
         let entries: Vec<_> = buffers
             .enumerate()
-            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding: binding as u32, resource: buffer.as_entire_binding() })
+            .map(|(binding, buffer)| wgpu::BindGroupEntry {
+                binding: binding as u32,
+                resource: buffer.as_entire_binding(),
+            })
             .collect();
         let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,
             layout: &pipeline.get_bind_group_layout(0),
             entries: &entries,
         });
-        Self { pipeline, bind_group, params, tiles, pixels, staging, capacity }
+        Self { pipeline, bind_group, params, tiles, pixels, ray_counts, capacity }
     }
 }
 

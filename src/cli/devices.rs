@@ -1,0 +1,49 @@
+//! `trueray devices`.
+
+use super::failure::{Failure, NO_DEVICE, OK, OUTPUT};
+use crate::gpu::{Error, list};
+
+/// Arguments of `trueray devices`.
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(args: &Args) -> u8 {
+    match print(args) {
+        Ok(()) => OK,
+        Err(failure) => failure.report(),
+    }
+}
+
+fn print(args: &Args) -> Result<(), Failure> {
+    let devices = list()?;
+    if args.json {
+        let json = serde_json::to_string_pretty(&devices).map_err(|e| Failure::new(OUTPUT, e.to_string()))?;
+        println!("{json}");
+    } else {
+        const MIB: u64 = 1 << 20;
+        for device in &devices {
+            println!("{}: {}", device.index, device.name);
+            println!("   type      {}", device.kind);
+            println!("   driver    {}", device.driver);
+            if !device.pci.is_empty() {
+                println!("   PCI id    {}", device.pci);
+            }
+            println!("   f64       {}", if device.f64 { "yes" } else { "no" });
+            println!(
+                "   limits    {} MiB a storage binding, {} MiB a buffer, {} workgroups a dispatch, {} invocations a workgroup",
+                device.max_storage_binding / MIB,
+                device.max_buffer / MIB,
+                device.max_workgroups,
+                device.max_invocations
+            );
+        }
+    }
+    if devices.is_empty() {
+        return Err(Failure::new(NO_DEVICE, Error::none_found().to_string()));
+    }
+    Ok(())
+}

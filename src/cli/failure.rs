@@ -1,0 +1,66 @@
+//! Exit codes and what they stand for: a documented contract.
+
+use std::fmt;
+
+use crate::film::OutputError;
+use crate::gpu;
+
+/// All is well.
+pub(super) const OK: u8 = 0;
+/// `compare`: the pictures differ by more than the limits.
+pub(super) const DIFFERENT: u8 = 1;
+/// The arguments make no sense; for `compare` any trouble.
+pub(super) const USAGE: u8 = 2;
+/// The scene cannot be read or has errors.
+pub(super) const SCENE: u8 = 3;
+/// There is no device, or not the one asked for, or it cannot hold the scene.
+pub(super) const NO_DEVICE: u8 = 4;
+/// The device failed while it worked.
+pub(super) const DEVICE_LOST: u8 = 5;
+/// A file cannot be written.
+pub(super) const OUTPUT: u8 = 6;
+
+/// Why a subcommand ends early.
+#[derive(Debug)]
+pub(super) struct Failure {
+    /// The exit code.
+    pub code: u8,
+    /// What to tell the user; empty where that is done already.
+    pub message: String,
+}
+
+impl Failure {
+    pub(super) fn new(code: u8, message: impl Into<String>) -> Self {
+        Self { code, message: message.into() }
+    }
+
+    /// Tells the user and returns the exit code.
+    pub(super) fn report(&self) -> u8 {
+        if !self.message.is_empty() {
+            eprintln!("trueray: {self}");
+        }
+        self.code
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl From<gpu::Error> for Failure {
+    fn from(error: gpu::Error) -> Self {
+        let code = match error {
+            gpu::Error::NoDevice(_) => NO_DEVICE,
+            gpu::Error::Lost(_) => DEVICE_LOST,
+        };
+        Self::new(code, error.to_string())
+    }
+}
+
+impl From<OutputError> for Failure {
+    fn from(error: OutputError) -> Self {
+        Self::new(OUTPUT, error.to_string())
+    }
+}

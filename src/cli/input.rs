@@ -1,0 +1,107 @@
+//! Reading scene files for the subcommands.
+
+use std::ffi::OsStr;
+use std::io::{IsTerminal, Read};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use super::failure::{Failure, SCENE};
+use crate::engine::unsupported;
+use crate::scene::{Parsed, Scene, parse};
+
+/// A scene file that has been read, with errors or without.
+#[derive(Debug)]
+pub(super) struct Input {
+    /// Its name as the user gave it.
+    pub name: String,
+    /// What the parser found.
+    pub parsed: Parsed,
+    /// Reading and parsing.
+    pub parse_time: Duration,
+    /// Line of the first sphere that asks for refraction.
+    refraction: Option<(usize, String)>,
+    path: Option<PathBuf>,
+}
+
+impl Input {
+    /// Reads the file at `path`, or standard input for `-`; errors in the scene stay in `parsed`.
+    pub(super) fn read(path: &Path) -> Result<Self, Failure> {
+        let start = Instant::now();
+        let stdin = path == Path::new("-");
+        let name = if stdin { "standard input".to_owned() } else { path.display().to_string() };
+        let text = if stdin {
+            let mut text = Vec::new();
+            std::io::stdin().lock().read_to_end(&mut text).map(|_| text)
+        } else {
+            std::fs::read(path)
+        };
+        let text = text.map_err(|error| Failure::new(SCENE, format!("cannot read the scene {name}: {error}")))?;
+        let parsed = parse(&name, &text);
+        let refraction = parsed.scene.as_ref().and_then(|scene| {
+            let index = unsupported(scene)?;
+            Some((line_of_sphere(&text, index), scene.sphere_names.get(index).to_owned()))
+        });
+        Ok(Self { name, parsed, parse_time: start.elapsed(), refraction, path: (!stdin).then(|| path.to_owned()) })
+    }
+
+    /// Prints errors and warnings and returns the scene, if it can be rendered.
+    pub(super) fn into_renderable(self, quiet: bool) -> Result<Loaded, Failure> {
+        self.print_diagnostics(quiet);
+        if let Some((line, sphere)) = &self.refraction {
+            let message = format!(
+                "{}:{line}: sphere '{sphere}' has Kt > 0: refraction cannot be rendered yet\n  \
+                 help: remove the last two numbers of the line (Kt eta), or set Kt to 0",
+                self.name
+            );
+            return Err(Failure::new(SCENE, message));
+        }
+        match self.parsed.scene {
+            Some(scene) => Ok(Loaded { name: self.name, scene, parse_time: self.parse_time, path: self.path }),
+            None => Err(Failure::new(SCENE, "")),
+        }
+    }
+
+    /// Prints the parser's report to standard error; warnings only unless `quiet`.
+    pub(super) fn print_diagnostics(&self, quiet: bool) {
+        if self.parsed.errors > 0 || !quiet {
+            eprint!("{}", self.parsed.report(std::io::stderr().is_terminal()));
+        }
+    }
+}
+
+/// A scene without errors.
+#[derive(Debug)]
+pub(super) struct Loaded {
+    /// The file's name as the user gave it.
+    pub name: String,
+    pub scene: Scene,
+    /// Reading and parsing.
+    pub parse_time: Duration,
+    path: Option<PathBuf>,
+}
+
+impl Loaded {
+    /// Reads a scene that is to be rendered.
+    pub(super) fn read(path: &Path, quiet: bool) -> Result<Self, Failure> {
+        Input::read(path)?.into_renderable(quiet)
+    }
+
+    /// The file name that OUTPUT or, without one, the scene's own name gives.
+    pub(super) fn output_name(&self) -> PathBuf {
+        let stem = || self.path.as_deref().and_then(Path::file_stem).unwrap_or(OsStr::new("trueray"));
+        self.scene.output.as_ref().map_or_else(|| Path::new(stem()).with_extension("ppm"), PathBuf::from)
+    }
+
+    /// Whether `target` is the scene file itself, which no picture may overwrite.
+    pub(super) fn is_scene_file(&self, target: &Path) -> bool {
+        let real = |path: &Path| path.canonicalize().ok();
+        self.path.as_deref().and_then(real).is_some_and(|path| Some(path) == real(target))
+    }
+}
+
+/// The line (from 1) of the `SPHERE` statement number `index` (from 0) in the text of a scene without errors.
+fn line_of_sphere(text: &[u8], index: usize) -> usize {
+    let is_sphere = |line: &&[u8]| line.trim_ascii_start().starts_with(b"SPHERE");
+    let lines = text.split(|&byte| byte == b'\n').enumerate();
+    lines.filter(|(_, line)| is_sphere(line)).nth(index).map_or(0, |(line, _)| line + 1)
+}

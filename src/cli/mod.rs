@@ -1,0 +1,61 @@
+//! The command line: one file for each subcommand.
+
+mod check;
+mod compare;
+mod devices;
+mod failure;
+mod input;
+mod options;
+mod progress;
+mod render;
+mod stats;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Renders scenes of spheres and ellipsoids on any Vulkan device and checks the picture against a CPU reference.
+///
+/// `trueray SCENE.txt` renders the scene and writes the file that its OUTPUT line names.
+#[derive(Debug, Parser)]
+#[command(
+    name = "trueray",
+    version,
+    args_conflicts_with_subcommands = true,
+    arg_required_else_help = true,
+    after_help = "Exit codes: 0 ok, 2 usage, 3 scene, 4 no device, 5 device lost, 6 output.\n\
+                  compare: 0 same, 1 different, 2 trouble.\n\
+                  Environment: WGPU_ADAPTER_NAME, WGPU_POWER_PREF, WGPU_BACKEND, VK_DRIVER_FILES are honoured."
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    render: Option<render::Args>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Render scenes to picture files
+    Render(render::Args),
+    /// Say where and how two pictures differ, or a picture and its scene's reference
+    Compare(compare::Args),
+    /// Check scene files and summarise them, without rendering
+    Check(check::Args),
+    /// List the Vulkan devices
+    Devices(devices::Args),
+}
+
+/// Runs the program with the arguments of the process.
+pub fn run() -> ExitCode {
+    let cli = Cli::parse();
+    let code = match (cli.command, cli.render) {
+        (Some(Command::Render(args)), _) | (None, Some(args)) => render::run(&args),
+        (Some(Command::Compare(args)), _) => compare::run(&args),
+        (Some(Command::Check(args)), _) => check::run(&args),
+        (Some(Command::Devices(args)), _) => devices::run(&args),
+        // clap prints the help where there is no argument.
+        (None, None) => failure::USAGE,
+    };
+    ExitCode::from(code)
+}

@@ -1,0 +1,155 @@
+//! Options that several subcommands share.
+
+use clap::{Args, ValueEnum};
+
+use crate::effects::{Effects, Request};
+use crate::gpu::{Choice, Error, Gpu};
+use crate::scene::Scene;
+use crate::settings::{Quantize, Sampling, Secondary, Settings, Specular};
+
+/// What decides the picture besides the scene.
+#[derive(Debug, Args)]
+pub(super) struct PictureOptions {
+    /// Rendering rules: `classic` is what the assignment's official pictures pin, `exact` what the physics says
+    #[arg(long, value_enum, default_value_t = Convention::Classic)]
+    convention: Convention,
+    /// Where in its pixel the sample lies
+    #[arg(long, value_enum)]
+    sampling: Option<SamplingArg>,
+    /// How a colour becomes an 8-bit level
+    #[arg(long, value_enum)]
+    quantize: Option<QuantizeArg>,
+    /// Least distance of shadow and reflection hits, or `skip-self`
+    #[arg(long, value_name = "T|skip-self", value_parser = secondary)]
+    secondary_epsilon: Option<Secondary>,
+    /// Specular term
+    #[arg(long, value_enum)]
+    specular: Option<SpecularArg>,
+    /// Greatest number of reflection bounces
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(0..=i64::from(Settings::MAX_DEPTH)))]
+    max_depth: u32,
+    /// Picture size in place of the scene's RES
+    #[arg(long, value_name = "WxH", value_parser = resolution)]
+    res: Option<(u32, u32)>,
+    /// What to simulate: auto, all, none, a list such as `ambient,diffuse` (exactly those), or changes such as `-shadows,+shells`
+    #[arg(long, value_name = "LIST", default_value = "auto", allow_hyphen_values = true)]
+    effects: Request,
+}
+
+impl PictureOptions {
+    pub(super) fn settings(&self) -> Settings {
+        let mut settings = match self.convention {
+            Convention::Classic => Settings::classic(),
+            Convention::Exact => Settings::exact(),
+        };
+        if let Some(sampling) = self.sampling {
+            settings.sampling = match sampling {
+                SamplingArg::Corner => Sampling::Corner,
+                SamplingArg::BottomLeft => Sampling::BottomLeft,
+                SamplingArg::Center => Sampling::Center,
+            };
+        }
+        if let Some(quantize) = self.quantize {
+            settings.quantize = match quantize {
+                QuantizeArg::Truncate => Quantize::Truncate,
+                QuantizeArg::Round => Quantize::Round,
+            };
+        }
+        if let Some(secondary) = self.secondary_epsilon {
+            settings.secondary = secondary;
+        }
+        if let Some(specular) = self.specular {
+            settings.specular = match specular {
+                SpecularArg::Phong => Specular::Phong,
+                SpecularArg::Blinn => Specular::Blinn,
+            };
+        }
+        settings.max_depth = self.max_depth;
+        settings
+    }
+
+    pub(super) fn effects(&self, scene: &Scene, settings: &Settings) -> Effects {
+        Effects::requested(scene, settings, &self.effects)
+    }
+
+    /// Applies `--res`.
+    pub(super) fn resize(&self, scene: &mut Scene) {
+        if let Some((width, height)) = self.res {
+            scene.width = width;
+            scene.height = height;
+        }
+    }
+}
+
+/// Which device renders.
+#[derive(Debug, Args)]
+pub(super) struct DeviceOptions {
+    /// auto, cpu, gpu (never falls back), an index of `trueray devices`, part of a device's name or driver, or its PCI id
+    #[arg(long, value_name = "DEVICE", default_value = "auto")]
+    pub device: Choice,
+}
+
+impl DeviceOptions {
+    /// The Vulkan device, or `None` for the CPU reference. `auto` takes the reference where there is no device at all and
+    /// says so.
+    pub(super) fn open(&self) -> Result<Option<Gpu>, Error> {
+        match &self.device {
+            Choice::Cpu => Ok(None),
+            Choice::Auto => match Gpu::open(&Choice::Auto) {
+                Err(Error::NoDevice(_)) if crate::gpu::list().is_ok_and(|list| list.is_empty()) => {
+                    eprintln!("trueray: no Vulkan device was found, rendering on the CPU reference");
+                    Ok(None)
+                }
+                result => result.map(Some),
+            },
+            choice => Gpu::open(choice).map(Some),
+        }
+    }
+}
+
+/// How the device of a picture is called in messages.
+pub(super) fn device_name(gpu: Option<&Gpu>) -> String {
+    gpu.map_or_else(|| "the CPU reference (f64)".to_owned(), |gpu| gpu.info.to_string())
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Convention {
+    Classic,
+    Exact,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum SamplingArg {
+    Corner,
+    BottomLeft,
+    Center,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum QuantizeArg {
+    Truncate,
+    Round,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum SpecularArg {
+    Phong,
+    Blinn,
+}
+
+fn secondary(text: &str) -> Result<Secondary, String> {
+    if text == "skip-self" {
+        return Ok(Secondary::SkipSelf);
+    }
+    match text.parse::<f64>() {
+        Ok(epsilon) if (0.0..1.0).contains(&epsilon) => Ok(Secondary::Epsilon(epsilon)),
+        _ => Err("expected a number from 0 to below 1, or `skip-self`".into()),
+    }
+}
+
+fn resolution(text: &str) -> Result<(u32, u32), String> {
+    let side = |text: &str| text.parse().ok().filter(|side| (1..=crate::scene::MAX_RESOLUTION).contains(side));
+    text.split_once(['x', 'X', '×'])
+        .and_then(|(width, height)| Some((side(width)?, side(height)?)))
+        .ok_or_else(|| format!("expected WxH with sides from 1 to {}, such as 640x480", crate::scene::MAX_RESOLUTION))
+}

@@ -1,0 +1,220 @@
+//! `trueray render` and `trueray SCENE.txt`.
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use super::failure::{Failure, OK, OUTPUT, USAGE};
+use super::input::Loaded;
+use super::options::{DeviceOptions, PictureOptions, device_name};
+use super::progress::{Progress, Style};
+use super::stats::Stats;
+use crate::effects::Effects;
+use crate::engine::{Engine, render_bands};
+use crate::film::{Format, PictureWriter, Target};
+use crate::gpu::Gpu;
+use crate::settings::Settings;
+
+/// Arguments of `trueray render`.
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// Scene files; `-` is standard input
+    #[arg(required = true, value_name = "SCENE")]
+    scenes: Vec<PathBuf>,
+    /// Picture file, a folder for it, or `-` for standard output; without it the file that OUTPUT names
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// File format: p6, p3 or png; without it the file name's ending decides
+    #[arg(long, value_name = "FORMAT")]
+    format: Option<Format>,
+    #[command(flatten)]
+    picture: PictureOptions,
+    #[command(flatten)]
+    device: DeviceOptions,
+    /// Print which effects are simulated, and why
+    #[arg(long)]
+    explain: bool,
+    /// Print device, effects, rays and times
+    #[arg(long)]
+    stats: bool,
+    /// Write the same as JSON; `-` is standard error
+    #[arg(long, value_name = "FILE")]
+    stats_json: Option<PathBuf>,
+    /// How progress is shown on standard error
+    #[arg(long, value_enum, default_value_t = Style::Auto)]
+    progress: Style,
+    /// Print errors only
+    #[arg(short, long)]
+    quiet: bool,
+    /// Print more: the effects and the times
+    #[arg(short, long, conflicts_with = "quiet")]
+    verbose: bool,
+}
+
+pub(super) fn run(args: &Args) -> u8 {
+    match render_all(args) {
+        Ok(code) => code,
+        Err(failure) => failure.report(),
+    }
+}
+
+/// Renders every scene; a scene with errors does not keep the others from being rendered.
+fn render_all(args: &Args) -> Result<u8, Failure> {
+    if args.scenes.len() > 1 && args.output.as_deref().is_some_and(|output| !output.is_dir()) {
+        return Err(Failure::new(USAGE, "several scenes need a folder for -o, or none"));
+    }
+    // Opening a device takes longer than reading most scenes: both at once.
+    let start = Instant::now();
+    let (gpu, first) = std::thread::scope(|scope| {
+        let opening = scope.spawn(|| (args.device.open(), start.elapsed()));
+        let first = Loaded::read(&args.scenes[0], args.quiet);
+        (opening.join(), first)
+    });
+    let (gpu, open_time) = gpu.map_err(|_| Failure::new(super::failure::DEVICE_LOST, "opening the device failed"))?;
+
+    let mut all_stats = Vec::new();
+    let mut code = OK;
+    let mut first = Some(first);
+    // A scene that cannot be read is the better message where there is no device either.
+    let gpu = match (gpu, &first) {
+        (Err(_), Some(Err(_))) if args.scenes.len() == 1 => None,
+        (gpu, _) => gpu?,
+    };
+    for path in &args.scenes {
+        let loaded = first.take().unwrap_or_else(|| Loaded::read(path, args.quiet));
+        match loaded.and_then(|loaded| render_one(args, loaded, gpu.as_ref(), open_time)) {
+            Ok(stats) => all_stats.push(stats),
+            Err(failure) => {
+                let failed = failure.report();
+                code = if code == OK { failed } else { code };
+                if failed == super::failure::DEVICE_LOST {
+                    break;
+                }
+            }
+        }
+    }
+    if let Some(path) = &args.stats_json {
+        write_stats(path, &all_stats)?;
+    }
+    Ok(code)
+}
+
+fn render_one(args: &Args, mut loaded: Loaded, gpu: Option<&Gpu>, open_time: Duration) -> Result<Stats, Failure> {
+    let start = Instant::now();
+    args.picture.resize(&mut loaded.scene);
+    let scene = &loaded.scene;
+    let (target, format) = target(args, &loaded)?;
+    let settings = args.picture.settings();
+    let effects = args.picture.effects(scene, &settings);
+    if args.explain || args.verbose {
+        eprint!("{}", explanation(&loaded.name, &effects));
+    }
+
+    let mut engine = Engine::new(gpu, scene, &settings, &effects)?;
+    let wants_stats = args.stats || args.stats_json.is_some();
+    if wants_stats {
+        engine.count_rays();
+    }
+    let mut writer = PictureWriter::create(&target, format, scene.width, scene.height)?;
+    let mut write_time = Duration::ZERO;
+    let mut progress = Progress::new(if args.quiet { Style::None } else { args.progress }, &loaded.name, scene.height);
+    let not_finite = render_bands(&mut engine, (scene.width, scene.height), |band| {
+        let start = Instant::now();
+        writer.write_rows(band.rgb)?;
+        write_time += start.elapsed();
+        progress.set(band.first);
+        Ok::<_, Failure>(())
+    })?;
+    drop(progress);
+    let finishing = Instant::now();
+    writer.finish()?;
+    write_time += finishing.elapsed();
+
+    if not_finite > 0 {
+        eprintln!("trueray: {}: {not_finite} pixels are not finite (NaN or infinity)", loaded.name);
+    }
+    let stats =
+        stats(&loaded, settings, effects, &engine, &target, gpu, not_finite, [open_time, write_time, start.elapsed()]);
+    if !args.quiet {
+        let Stats { width, height, output, device, total_ms, .. } = &stats;
+        eprintln!("{output}: {width} × {height} on {device} in {total_ms:.0} ms");
+    }
+    if args.stats || args.verbose {
+        eprint!("{}", stats.table());
+    }
+    Ok(stats)
+}
+
+/// Where the picture goes and in which format.
+fn target(args: &Args, loaded: &Loaded) -> Result<(Target, Format), Failure> {
+    let target = match &args.output {
+        None => Target::File(loaded.output_name()),
+        Some(folder) if folder.is_dir() => Target::File(folder.join(loaded.output_name())),
+        Some(path) => Target::from_argument(path.as_os_str()),
+    };
+    let format = match &target {
+        Target::File(path) => {
+            if loaded.is_scene_file(path) {
+                let message = format!("{}: the picture would overwrite its own scene file {target}", loaded.name);
+                return Err(Failure::new(OUTPUT, message));
+            }
+            args.format.or_else(|| Format::from_extension(path))
+        }
+        Target::Stdout => args.format,
+    };
+    Ok((target, format.unwrap_or_default()))
+}
+
+/// The table of effects with their reasons.
+pub(super) fn explanation(name: &str, effects: &Effects) -> String {
+    let row = |row: &crate::effects::Row| {
+        format!("  {:<12} {:<4} {}\n", row.effect, if row.on { "on" } else { "off" }, row.reason)
+    };
+    let rows: String = effects.rows.iter().map(row).collect();
+    format!("{name}: effects (reflection depth {})\n{rows}", effects.depth)
+}
+
+#[allow(clippy::too_many_arguments, reason = "gathers what is known in one place")]
+fn stats(
+    loaded: &Loaded,
+    settings: Settings,
+    effects: Effects,
+    engine: &Engine,
+    target: &Target,
+    gpu: Option<&Gpu>,
+    not_finite_pixels: u64,
+    [open, write, render]: [Duration; 3],
+) -> Stats {
+    let ms = |duration: Duration| duration.as_secs_f64() * 1e3;
+    Stats {
+        scene: loaded.name.clone(),
+        output: target.to_string(),
+        width: loaded.scene.width,
+        height: loaded.scene.height,
+        spheres: loaded.scene.spheres.len(),
+        lights: loaded.scene.lights.len(),
+        device: device_name(gpu),
+        settings,
+        effects,
+        rays: engine.rays(),
+        not_finite_pixels,
+        parse_ms: ms(loaded.parse_time),
+        open_ms: ms(open),
+        times: engine.times(),
+        write_ms: ms(write),
+        // Parsing and opening overlap.
+        total_ms: ms(loaded.parse_time.max(open) + render),
+    }
+}
+
+fn write_stats(path: &Path, stats: &[Stats]) -> Result<(), Failure> {
+    let mut json = match stats {
+        [one] => serde_json::to_string_pretty(one),
+        all => serde_json::to_string_pretty(all),
+    }
+    .map_err(|error| Failure::new(OUTPUT, error.to_string()))?;
+    json.push('\n');
+    let written =
+        if path == Path::new("-") { std::io::stderr().write_all(json.as_bytes()) } else { std::fs::write(path, json) };
+    written.map_err(|error| Failure::new(OUTPUT, format!("cannot write {}: {error}", path.display())))
+}

@@ -1,0 +1,69 @@
+//! What `--stats` and `--stats-json` say of a picture.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+
+use crate::effects::Effects;
+use crate::engine::{Rays, Times};
+use crate::settings::Settings;
+
+/// Everything worth knowing of one rendered picture.
+#[derive(Debug, Serialize)]
+pub(super) struct Stats {
+    pub scene: String,
+    pub output: String,
+    pub width: u32,
+    pub height: u32,
+    pub spheres: usize,
+    pub lights: usize,
+    pub device: String,
+    pub settings: Settings,
+    pub effects: Effects,
+    pub rays: Option<Rays>,
+    pub not_finite_pixels: u64,
+    /// Reading and parsing the scene.
+    pub parse_ms: f64,
+    /// Finding and opening the device.
+    pub open_ms: f64,
+    #[serde(flatten)]
+    pub times: Times,
+    /// Encoding and writing the file.
+    pub write_ms: f64,
+    /// All of the above, from the scene file to the picture file.
+    pub total_ms: f64,
+}
+
+impl Stats {
+    pub(super) fn table(&self) -> String {
+        let mut text = String::new();
+        let mut row = |name: &str, value: String| {
+            let _ = writeln!(text, "  {name:<18} {value}");
+        };
+        row("picture", format!("{} × {}", self.width, self.height));
+        row("scene", format!("{} spheres, {} lights", self.spheres, self.lights));
+        row("device", self.device.clone());
+        row("effects", format!("{} (depth {})", self.effects.set, self.effects.depth));
+        if let Some(Rays { primary, shadow, reflection }) = self.rays {
+            row("rays", format!("{primary} primary, {shadow} shadow, {reflection} reflection"));
+        }
+        let times = [
+            ("parse", self.parse_ms),
+            ("open device", self.open_ms),
+            ("prepare", self.times.prepare_ms),
+            ("compile", self.times.compile_ms),
+            ("render", self.times.render_ms),
+            ("read back", self.times.read_back_ms),
+            ("write", self.write_ms),
+            ("total", self.total_ms),
+        ];
+        for (name, ms) in times {
+            row(name, format!("{ms:>10.3} ms"));
+        }
+        if self.times.dispatches > 0 {
+            let Times { dispatches, longest_dispatch_ms, .. } = self.times;
+            row("dispatches", format!("{dispatches}, longest {longest_dispatch_ms:.3} ms"));
+        }
+        text
+    }
+}

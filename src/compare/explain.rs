@@ -1,0 +1,85 @@
+//! A picture against its scene: which differing pixels does the reference explain?
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::cpu::{Decision, Judge, Reference};
+use crate::film::Picture;
+
+/// How many unexplained pixels are listed one by one.
+const LISTED: usize = 20;
+
+/// Why the pixels of a picture differ from the reference.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Explanation {
+    /// Pixels that differ.
+    pub differing: u64,
+    /// Differing pixels for each decision that explains them.
+    pub explained: BTreeMap<Decision, u64>,
+    /// Differing pixels that no decision explains: the verdict.
+    pub unexplained: u64,
+    /// The first of those, in reading order.
+    pub listed: Vec<UnexplainedPixel>,
+}
+
+/// A pixel that no decision explains.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct UnexplainedPixel {
+    /// Column.
+    pub x: u32,
+    /// Row.
+    pub y: u32,
+    /// The picture's value.
+    pub value: [u8; 3],
+    /// The reference's value.
+    pub reference: [u8; 3],
+}
+
+impl Explanation {
+    /// Judges every pixel in which `picture` differs from `expected`, the picture of `reference`.
+    ///
+    /// # Panics
+    ///
+    /// If the two pictures differ in size.
+    pub fn of(picture: &Picture, expected: &Picture, reference: &Reference<f64>, judge: &Judge) -> Self {
+        assert_eq!((picture.width(), picture.height()), (expected.width(), expected.height()), "sizes");
+        let width = picture.width();
+        let pairs = picture.pixels().par_iter().zip(expected.pixels()).enumerate();
+        let differing: Vec<_> = pairs
+            .filter(|(_, (value, reference))| value != reference)
+            .map(|(index, (&value, &expected))| {
+                let (x, y) = ((index % width as usize) as u32, (index / width as usize) as u32);
+                (judge.explain(reference, x, y, value), UnexplainedPixel { x, y, value, reference: expected })
+            })
+            .collect();
+        let mut explanation =
+            Self { differing: differing.len() as u64, explained: BTreeMap::new(), unexplained: 0, listed: Vec::new() };
+        for (decision, pixel) in differing {
+            if let Some(decision) = decision {
+                *explanation.explained.entry(decision).or_default() += 1;
+            } else {
+                explanation.unexplained += 1;
+                if explanation.listed.len() < LISTED {
+                    explanation.listed.push(pixel);
+                }
+            }
+        }
+        explanation
+    }
+
+    /// A table for people.
+    pub fn report(&self) -> String {
+        use std::fmt::Write as _;
+        let mut text = format!("differing pixels  {}\n", self.differing);
+        for (decision, count) in &self.explained {
+            let _ = writeln!(text, "  {count:>8}  {}", decision.name());
+        }
+        let _ = writeln!(text, "  {:>8}  unexplained", self.unexplained);
+        for UnexplainedPixel { x, y, value, reference } in &self.listed {
+            let _ = writeln!(text, "            x {x}, y {y}: {value:?}, reference {reference:?}");
+        }
+        text
+    }
+}

@@ -1,0 +1,181 @@
+//! One interface to whatever renders: rows of a picture, band by band, in bounded memory.
+
+use std::time::{Duration, Instant};
+
+use serde::Serialize;
+
+use crate::cpu::{Reference, Tally};
+use crate::effects::Effects;
+use crate::gpu::{self, Gpu, GpuRenderer};
+use crate::scene::Scene;
+use crate::settings::Settings;
+use crate::tiles::TILE;
+
+/// Bytes of one band of rows at the most, unless a single row of tiles takes more.
+const BAND_BYTES: usize = 16 << 20;
+
+/// Where the time of a picture went.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Times {
+    /// From the scene to what the renderer reads, in ms.
+    pub prepare_ms: f64,
+    /// From shader text to a kernel that has run once, in ms.
+    pub compile_ms: f64,
+    /// The rays themselves, in ms.
+    pub render_ms: f64,
+    /// From the device's memory to rows, in ms.
+    pub read_back_ms: f64,
+    /// The longest dispatch, in ms; 0 on the CPU.
+    pub longest_dispatch_ms: f64,
+    /// Number of dispatches; 0 on the CPU.
+    pub dispatches: u64,
+}
+
+/// How many rays a picture took.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct Rays {
+    /// Rays from the eye; pixels that no sphere can cover need none on the GPU.
+    pub primary: u64,
+    /// Rays towards lights.
+    pub shadow: u64,
+    /// Reflected rays.
+    pub reflection: u64,
+}
+
+/// A renderer with a scene.
+#[derive(Debug)]
+pub enum Engine<'a> {
+    /// The CPU reference.
+    Cpu(CpuEngine),
+    /// A Vulkan device.
+    Gpu(Box<GpuRenderer<'a>>, Duration),
+}
+
+/// The CPU reference with its clock.
+#[derive(Debug)]
+pub struct CpuEngine {
+    reference: Reference<f64>,
+    prepare: Duration,
+    render: Duration,
+    tally: Tally,
+}
+
+impl<'a> Engine<'a> {
+    /// Prepares `scene` for `gpu`, or for the CPU reference where that is `None`.
+    pub fn new(
+        gpu: Option<&'a Gpu>,
+        scene: &Scene,
+        settings: &Settings,
+        effects: &Effects,
+    ) -> Result<Self, gpu::Error> {
+        let start = Instant::now();
+        Ok(match gpu {
+            None => {
+                let reference = Reference::new(scene, settings, effects);
+                Self::Cpu(CpuEngine {
+                    reference,
+                    prepare: start.elapsed(),
+                    render: Duration::ZERO,
+                    tally: Tally::default(),
+                })
+            }
+            Some(gpu) => Self::Gpu(Box::new(GpuRenderer::new(gpu, scene, settings, effects)?), start.elapsed()),
+        })
+    }
+
+    /// Counts rays, which the GPU does only when asked; before the first row.
+    pub fn count_rays(&mut self) {
+        if let Self::Gpu(gpu, _) = self {
+            gpu.count_rays();
+        }
+    }
+
+    /// Renders whole rows from row `first` on (a multiple of [`TILE`]); returns how many pixels are not finite.
+    pub fn rows(&mut self, first: u32, rgb: &mut [u8]) -> Result<u64, gpu::Error> {
+        match self {
+            Self::Cpu(cpu) => {
+                let start = Instant::now();
+                let tally = cpu.reference.rows(first, rgb);
+                cpu.render += start.elapsed();
+                cpu.tally = cpu.tally.plus(tally);
+                Ok(tally.not_finite)
+            }
+            Self::Gpu(gpu, _) => gpu.rows(first, rgb),
+        }
+    }
+
+    /// Times so far.
+    pub fn times(&self) -> Times {
+        match self {
+            Self::Cpu(cpu) => Times { prepare_ms: ms(cpu.prepare), render_ms: ms(cpu.render), ..Times::default() },
+            Self::Gpu(gpu, prepare) => {
+                let times = gpu.times();
+                Times {
+                    prepare_ms: ms(*prepare),
+                    compile_ms: ms(times.compile),
+                    render_ms: ms(times.render),
+                    read_back_ms: ms(times.read_back),
+                    longest_dispatch_ms: ms(times.longest_dispatch),
+                    dispatches: times.dispatches,
+                }
+            }
+        }
+    }
+
+    /// Rays so far; `None` where they were not counted.
+    pub fn rays(&self) -> Option<Rays> {
+        match self {
+            Self::Cpu(CpuEngine { tally: Tally { primary, shadow, reflection, .. }, .. }) => {
+                Some(Rays { primary: *primary, shadow: *shadow, reflection: *reflection })
+            }
+            Self::Gpu(gpu, _) => gpu.rays().map(|[primary, shadow, reflection]| Rays { primary, shadow, reflection }),
+        }
+    }
+}
+
+/// A band of rows on its way to the picture.
+#[derive(Debug)]
+pub struct Band<'a> {
+    /// Its first row.
+    pub first: u32,
+    /// Its rows, 3 bytes a pixel.
+    pub rgb: &'a [u8],
+}
+
+/// Renders a picture of `width` × `height` band by band; returns how many pixels are not finite.
+pub fn render_bands<E: From<gpu::Error>>(
+    engine: &mut Engine,
+    (width, height): (u32, u32),
+    mut sink: impl FnMut(Band) -> Result<(), E>,
+) -> Result<u64, E> {
+    let row_bytes = width as usize * 3;
+    let tile_rows = (BAND_BYTES / (row_bytes * TILE as usize)).max(1);
+    let band_rows = (tile_rows as u64 * u64::from(TILE)).min(u64::from(height)) as u32;
+    let mut rgb = vec![0; row_bytes * band_rows as usize];
+    let mut not_finite = 0;
+    for first in (0..height).step_by(band_rows as usize) {
+        let rgb = &mut rgb[..row_bytes * band_rows.min(height - first) as usize];
+        not_finite += engine.rows(first, rgb)?;
+        sink(Band { first, rgb })?;
+    }
+    Ok(not_finite)
+}
+
+/// Renders a whole picture into memory.
+pub fn render_picture(engine: &mut Engine, scene: &Scene) -> Result<(Vec<u8>, u64), gpu::Error> {
+    let mut picture = Vec::with_capacity(scene.width as usize * scene.height as usize * 3);
+    let not_finite = render_bands(engine, (scene.width, scene.height), |band| {
+        picture.extend_from_slice(band.rgb);
+        Ok::<_, gpu::Error>(())
+    })?;
+    Ok((picture, not_finite))
+}
+
+/// The first sphere, if any, that calls for what no renderer of this version has: refraction.
+pub fn unsupported(scene: &Scene) -> Option<usize> {
+    scene.spheres.iter().position(|sphere| sphere.kt != 0.0)
+}
+
+fn ms(duration: Duration) -> f64 {
+    duration.as_secs_f64() * 1e3
+}
