@@ -18,7 +18,3 @@ override BLINN: bool = false;
 
 // Each pixel also says how many rays it took.
 override COUNT_RAYS: bool = false;
-
-// Loop counts, where they are few enough to be worth a pipeline of their own; 0 reads them from the parameters.
-override SPHERE_COUNT: u32 = 0u;
-override LIGHT_COUNT: u32 = 0u;

@@ -153,14 +153,30 @@ fn nearest_hit(ray: Ray, own: Own, within: Range) -> Hit {
     return nearest;
 }
 
+// Whether a root that counts lies beyond t_min and before t = 1: from where both ends lie, without a square root.
+fn blocks(ray: Ray, shape: Shape, own: Own) -> bool {
+    let t_min = params.secondary_t_min;
+    if SKIP_SELF && own.shape == shape.index {
+        let t = exit_root(own, ray, shape);
+        return own.inside && t > t_min && t < 1.0;
+    }
+    let at = approach(ray, shape);
+    let start = at.origin + at.direction * t_min;
+    let end = at.origin + at.direction;
+    let starts_outside = dot(start, start) > shape.radius * shape.radius;
+    let ends_outside = dot(end, end) > shape.radius * shape.radius;
+    let passes = starts_outside && ends_outside && at.b > at.a * t_min && at.b < at.a;
+    return at.discriminant >= 0.0 && (starts_outside != ends_outside || passes);
+}
+
 // Whether any sphere stands between the ray's origin and t = 1.
 fn any_hit(ray: Ray, own: Own) -> bool {
-    var range = secondary_range();
-    range.t_max = 1.0;
+    var blocked = false;
     for (var sphere = 0u; sphere < sphere_count(); sphere++) {
-        if accepted_root(ray, shapes[sphere], own, range).counts {
-            return true;
+        blocked |= blocks(ray, shapes[sphere], own);
+        if MANY && blocked {
+            break;
         }
     }
-    return false;
+    return blocked;
 }

@@ -47,9 +47,8 @@ struct Light {
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<storage, read> shapes: array<Shape>;
+// Bindings 1 and 3, shapes and lights, are in many.wgsl or few.wgsl.
 @group(0) @binding(2) var<storage, read> materials: array<Material>;
-@group(0) @binding(3) var<storage, read> lights: array<Light>;
 // x of each column and y of each row on the image plane.
 @group(0) @binding(4) var<storage, read> columns: array<real>;
 @group(0) @binding(5) var<storage, read> rows: array<real>;
@@ -62,17 +61,3 @@ struct Light {
 
 var<private> shadow_rays: u32;
 var<private> reflection_rays: u32;
-
-fn sphere_count() -> u32 {
-    if SPHERE_COUNT > 0u {
-        return SPHERE_COUNT;
-    }
-    return params.sphere_count;
-}
-
-fn light_count() -> u32 {
-    if LIGHT_COUNT > 0u {
-        return LIGHT_COUNT;
-    }
-    return params.light_count;
-}

@@ -22,6 +22,7 @@ use clap::{Parser, Subcommand};
     name = "trueray",
     version,
     args_conflicts_with_subcommands = true,
+    subcommand_negates_reqs = true,
     arg_required_else_help = true,
     after_help = "Exit codes: 0 ok, 2 usage, 3 scene, 4 no device, 5 device lost, 6 output.\n\
                   compare: 0 same, 1 different, 2 trouble.\n\
@@ -31,7 +32,7 @@ struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
     #[command(flatten)]
-    render: Option<render::Args>,
+    render: render::Args,
 }
 
 #[derive(Debug, Subcommand)]
@@ -49,13 +50,12 @@ enum Command {
 /// Runs the program with the arguments of the process.
 pub fn run() -> ExitCode {
     let cli = Cli::parse();
-    let code = match (cli.command, cli.render) {
-        (Some(Command::Render(args)), _) | (None, Some(args)) => render::run(&args),
-        (Some(Command::Compare(args)), _) => compare::run(&args),
-        (Some(Command::Check(args)), _) => check::run(&args),
-        (Some(Command::Devices(args)), _) => devices::run(&args),
-        // clap prints the help where there is no argument.
-        (None, None) => failure::USAGE,
+    let code = match cli.command {
+        None => render::run(&cli.render),
+        Some(Command::Render(args)) => render::run(&args),
+        Some(Command::Compare(args)) => compare::run(&args),
+        Some(Command::Check(args)) => check::run(&args),
+        Some(Command::Devices(args)) => devices::run(&args),
     };
     ExitCode::from(code)
 }

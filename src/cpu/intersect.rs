@@ -136,8 +136,22 @@ pub(crate) fn nearest_hit<T: Real>(
     nearest
 }
 
+/// Whether a root that counts lies beyond `t_min` and before t = 1: from where both ends lie, without a square root.
+pub(crate) fn blocks<T: Real>(ray: &Ray<T>, shape: &Shape<T>, own: Option<&Own<T>>, t_min: T) -> bool {
+    if let Some(own) = own.filter(|own| own.shape == shape.index) {
+        let t = exit_root(own, ray.direction, shape);
+        return own.inside && t > t_min && t < T::ONE;
+    }
+    let at = approach(ray, shape);
+    let start = at.origin + at.direction * t_min;
+    let end = at.origin + at.direction;
+    let starts_outside = start.dot(start) > shape.radius * shape.radius;
+    let ends_outside = end.dot(end) > shape.radius * shape.radius;
+    let passes = starts_outside && ends_outside && at.b > at.a * t_min && at.b < at.a;
+    at.discriminant >= T::ZERO && (starts_outside != ends_outside || passes)
+}
+
 /// Whether any sphere stands between the ray's origin and t = 1.
 pub(crate) fn any_hit<T: Real>(world: &World<T>, ray: &Ray<T>, own: Option<&Own<T>>) -> bool {
-    let range = Range { t_max: T::ONE, ..world.secondary };
-    world.shapes.iter().any(|shape| accepted_root(ray, shape, own, &range).is_some())
+    world.shapes.iter().any(|shape| blocks(ray, shape, own, world.secondary.t_min))
 }

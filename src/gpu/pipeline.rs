@@ -7,8 +7,9 @@ use crate::effects::{Effect, EffectSet};
 use crate::scene::Scene;
 use crate::settings::{Secondary, Settings, Specular};
 
-/// Up to this many spheres or lights a pipeline is compiled for their very number.
-const MAX_CONSTANT_COUNT: usize = 16;
+/// Up to this many spheres and lights a pipeline is compiled for their very number: the array lengths in
+/// `shaders/few.wgsl`.
+pub(super) const MAX_FEW: usize = 16;
 
 /// What a pipeline is specialised for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -19,10 +20,8 @@ pub struct Specialisation {
     pub skip_self: bool,
     /// Whether the specular term is (N·H)ⁿ.
     pub blinn: bool,
-    /// Number of spheres, or 0 where the kernel reads it from the parameters.
-    pub sphere_count: u32,
-    /// Number of lights, or 0 where the kernel reads it from the parameters.
-    pub light_count: u32,
+    /// Numbers of spheres and lights, where they are few enough to be compiled in.
+    pub few: Option<[u32; 2]>,
     /// Whether each pixel also says how many rays it took.
     pub count_rays: bool,
 }
@@ -30,13 +29,12 @@ pub struct Specialisation {
 impl Specialisation {
     /// For `scene` with `effects` under `settings`.
     pub fn new(scene: &Scene, settings: &Settings, effects: EffectSet) -> Self {
-        let constant = |count: usize| if count <= MAX_CONSTANT_COUNT { count as u32 } else { 0 };
+        let few = scene.spheres.len().max(scene.lights.len()) <= MAX_FEW;
         Self {
             effects,
             skip_self: settings.secondary == Secondary::SkipSelf,
             blinn: settings.specular == Specular::Blinn,
-            sphere_count: constant(scene.spheres.len()),
-            light_count: constant(scene.lights.len()),
+            few: few.then(|| [scene.spheres.len() as u32, scene.lights.len() as u32]),
             count_rays: false,
         }
     }
@@ -44,7 +42,7 @@ impl Specialisation {
     /// The constants by name; booleans are 0 and 1.
     pub fn constants(&self) -> Vec<(&'static str, f64)> {
         let on = |effect| f64::from(self.effects.has(effect));
-        vec![
+        let mut constants = vec![
             ("AMBIENT", on(Effect::Ambient)),
             ("DIFFUSE", on(Effect::Diffuse)),
             ("SPECULAR", on(Effect::Specular)),
@@ -55,9 +53,11 @@ impl Specialisation {
             ("SKIP_SELF", f64::from(self.skip_self)),
             ("BLINN", f64::from(self.blinn)),
             ("COUNT_RAYS", f64::from(self.count_rays)),
-            ("SPHERE_COUNT", f64::from(self.sphere_count)),
-            ("LIGHT_COUNT", f64::from(self.light_count)),
-        ]
+        ];
+        if let Some([spheres, lights]) = self.few {
+            constants.extend([("SPHERE_COUNT", f64::from(spheres)), ("LIGHT_COUNT", f64::from(lights))]);
+        }
+        constants
     }
 }
 
@@ -66,7 +66,7 @@ pub const ENTRY_POINT: &str = "render_tiles";
 
 /// Compiles the render kernel.
 pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<wgpu::ComputePipeline, Error> {
-    let module = gpu.shader_module(&Module::render())?;
+    let module = gpu.shader_module(&Module::render(specialisation.few.is_some()))?;
     gpu.checked("compiling the kernel", || {
         gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(ENTRY_POINT),

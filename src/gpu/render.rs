@@ -7,9 +7,9 @@ use wgpu::util::DeviceExt;
 
 use super::device::Gpu;
 use super::error::Error;
-use super::layout::Params;
+use super::layout::{Light, Params, Shape};
 use super::pack::Packed;
-use super::pipeline::{Specialisation, compile};
+use super::pipeline::{MAX_FEW, Specialisation, compile};
 use super::readable::Readable;
 use crate::camera::Camera;
 use crate::effects::{Effect, Effects};
@@ -156,8 +156,8 @@ impl<'a> GpuRenderer<'a> {
         // No band has more tiles than the picture.
         let picture = (packed.columns.len() as u64 / u64::from(TILE)) * (packed.rows.len() as u64 / u64::from(TILE));
         let capacity = picture.min(u64::from(MAX_DISPATCH_TILES.min(gpu.info.max_workgroups))) as u32;
-        let count_rays = specialisation.count_rays;
-        let kernel = gpu.checked("reserving buffers", || Kernel::new(gpu, pipeline, packed, capacity, count_rays))?;
+        let kernel =
+            gpu.checked("reserving buffers", || Kernel::new(gpu, pipeline, packed, capacity, specialisation))?;
         self.submit(&kernel, &[[0, 0]])?;
         self.times.compile = start.elapsed();
         Ok(kernel)
@@ -219,7 +219,13 @@ impl<'a> GpuRenderer<'a> {
 }
 
 impl Kernel {
-    fn new(gpu: &Gpu, pipeline: wgpu::ComputePipeline, packed: &Packed, capacity: u32, count_rays: bool) -> Self {
+    fn new(
+        gpu: &Gpu,
+        pipeline: wgpu::ComputePipeline,
+        packed: &Packed,
+        capacity: u32,
+        specialisation: &Specialisation,
+    ) -> Self {
         let device = &gpu.device;
         let filled = |contents: &[u8], usage| {
             // A binding of size 0 is not allowed; the kernel never reads past the counts.
@@ -235,11 +241,20 @@ impl Kernel {
         let tiles = empty(u64::from(capacity) * 8, storage | wgpu::BufferUsages::COPY_DST);
         let values = u64::from(capacity) * TILE_PIXELS as u64;
         let pixels = Readable::new(gpu, values);
-        let ray_counts = Readable::new(gpu, if count_rays { values } else { 1 });
+        let ray_counts = Readable::new(gpu, if specialisation.count_rays { values } else { 1 });
+        // What loops read: few elements go into a uniform buffer of fixed size.
+        let looped = |contents: &[u8], few_size: usize| match specialisation.few {
+            None => filled(contents, storage),
+            Some(_) => {
+                let mut padded = vec![0; few_size];
+                padded[..contents.len()].copy_from_slice(contents);
+                filled(&padded, wgpu::BufferUsages::UNIFORM)
+            }
+        };
         let inputs = [
-            filled(bytemuck::cast_slice(&packed.shapes), storage),
+            looped(bytemuck::cast_slice(&packed.shapes), MAX_FEW * size_of::<Shape>()),
             filled(bytemuck::cast_slice(&packed.materials), storage),
-            filled(bytemuck::cast_slice(&packed.lights), storage),
+            looped(bytemuck::cast_slice(&packed.lights), MAX_FEW * size_of::<Light>()),
             filled(bytemuck::cast_slice(&packed.columns), storage),
             filled(bytemuck::cast_slice(&packed.rows), storage),
         ];

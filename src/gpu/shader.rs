@@ -18,15 +18,18 @@ macro_rules! part {
 }
 
 /// The parts of the render module, in order.
-const RENDER: [Part; 7] = [
-    part!("effects.wgsl"),
-    part!("real_f32.wgsl"),
-    part!("types.wgsl"),
-    part!("intersect.wgsl"),
-    part!("shade.wgsl"),
-    part!("trace.wgsl"),
-    part!("main.wgsl"),
-];
+fn render_parts(few: bool) -> Vec<Part> {
+    vec![
+        part!("effects.wgsl"),
+        part!("real_f32.wgsl"),
+        part!("types.wgsl"),
+        if few { part!("few.wgsl") } else { part!("many.wgsl") },
+        part!("intersect.wgsl"),
+        part!("shade.wgsl"),
+        part!("trace.wgsl"),
+        part!("main.wgsl"),
+    ]
+}
 
 /// A composed module.
 #[derive(Debug, Clone)]
@@ -37,9 +40,9 @@ pub struct Module {
 }
 
 impl Module {
-    /// The module that renders tiles.
-    pub fn render() -> Self {
-        Self::join(RENDER.to_vec())
+    /// The module that renders tiles, for few spheres and lights or for any number.
+    pub fn render(few: bool) -> Self {
+        Self::join(render_parts(few))
     }
 
     fn join(parts: Vec<Part>) -> Self {

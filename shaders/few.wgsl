@@ -1,0 +1,19 @@
+// Few spheres and lights, in uniform buffers, their number compiled in: loops unroll and every lane reads the same element at
+// once. The lengths are MAX_FEW in src/gpu/pipeline.rs.
+
+@group(0) @binding(1) var<uniform> shapes: array<Shape, 16>;
+@group(0) @binding(3) var<uniform> lights: array<Light, 16>;
+
+override SPHERE_COUNT: u32;
+override LIGHT_COUNT: u32;
+
+// Whether leaving a loop over the spheres early pays: not where it is unrolled.
+const MANY: bool = false;
+
+fn sphere_count() -> u32 {
+    return SPHERE_COUNT;
+}
+
+fn light_count() -> u32 {
+    return LIGHT_COUNT;
+}

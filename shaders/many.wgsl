@@ -1,0 +1,15 @@
+// Spheres and lights of any number, in storage buffers.
+
+@group(0) @binding(1) var<storage, read> shapes: array<Shape>;
+@group(0) @binding(3) var<storage, read> lights: array<Light>;
+
+// Whether leaving a loop over the spheres early pays.
+const MANY: bool = true;
+
+fn sphere_count() -> u32 {
+    return params.sphere_count;
+}
+
+fn light_count() -> u32 {
+    return params.light_count;
+}
