@@ -16,4 +16,5 @@ pub mod geometry;
 pub mod gpu;
 pub mod scene;
 pub mod settings;
+pub mod study;
 pub mod tiles;

@@ -9,6 +9,7 @@ mod options;
 mod progress;
 mod render;
 mod stats;
+mod study;
 
 use std::process::ExitCode;
 
@@ -43,18 +44,34 @@ enum Command {
     Compare(compare::Args),
     /// Check scene files and summarise them, without rendering
     Check(check::Args),
+    /// Measure what each effect costs in time on a scene
+    Study(study::Args),
     /// List the Vulkan devices
     Devices(devices::Args),
 }
 
+/// Mesa's device-select layer asks the display server which device it uses, and complains where there is none. Nothing here
+/// needs a display, and devices are ranked by their type.
+fn keep_displays_out() {
+    const SWITCH: &str = "NODEVICE_SELECT";
+    if std::env::var_os(SWITCH).is_none() {
+        #[allow(unsafe_code, reason = "the process has one thread yet, so no other reads the environment")]
+        unsafe {
+            std::env::set_var(SWITCH, "1");
+        }
+    }
+}
+
 /// Runs the program with the arguments of the process.
 pub fn run() -> ExitCode {
+    keep_displays_out();
     let cli = Cli::parse();
     let code = match cli.command {
         None => render::run(&cli.render),
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Compare(args)) => compare::run(&args),
         Some(Command::Check(args)) => check::run(&args),
+        Some(Command::Study(args)) => study::run(&args),
         Some(Command::Devices(args)) => devices::run(&args),
     };
     ExitCode::from(code)

@@ -5,82 +5,99 @@
 
 use bytemuck::{Pod, Zeroable};
 
-/// Parameters of one dispatch.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-pub struct Params {
-    /// Colour of a primary ray that hits nothing.
-    pub background: [f32; 3],
-    /// Distance of the image plane.
-    pub near: f32,
-    /// Ambient intensity.
-    pub ambient: [f32; 3],
-    /// A primary ray's hit counts beyond this.
-    pub primary_t_min: f32,
-    /// A shadow or reflection ray's hit counts beyond this.
-    pub secondary_t_min: f32,
-    /// Added to 255·c before the fraction is cut off.
-    pub quantize_bias: f32,
-    /// Place of this dispatch's first tile in the list.
-    pub first_tile: u32,
-    /// Number of spheres.
-    pub sphere_count: u32,
-    /// Number of lights.
-    pub light_count: u32,
-    /// Greatest number of reflection bounces.
-    pub max_depth: u32,
-    /// To the size that WGSL gives the struct.
-    pub padding: [u32; 2],
+/// Declares a struct as the shader lays it out, with the offsets of its fields.
+macro_rules! shader_struct {
+    ($(#[$doc:meta])* $name:ident { $($(#[$field_doc:meta])* $field:ident: $type:ty,)* }) => {
+        $(#[$doc])*
+        #[repr(C)]
+        #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+        pub struct $name {
+            $($(#[$field_doc])* pub $field: $type,)*
+        }
+
+        impl $name {
+            /// Name and offset in bytes of each field, padding included.
+            pub const FIELDS: &[(&str, usize)] = &[$((stringify!($field), std::mem::offset_of!($name, $field))),*];
+        }
+    };
 }
 
-/// What the intersection reads of a sphere.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-pub struct Shape {
-    /// Centre in world space.
-    pub center: [f32; 3],
-    /// Radius in object space.
-    pub radius: f32,
-    /// World to object space.
-    pub inv_scale: [f32; 3],
-    /// Lowest index of a sphere with this very surface.
-    pub index: u32,
+shader_struct! {
+    /// Parameters of one dispatch.
+    Params {
+        /// Colour of a primary ray that hits nothing.
+        background: [f32; 3],
+        /// Distance of the image plane.
+        near: f32,
+        /// Ambient intensity.
+        ambient: [f32; 3],
+        /// A primary ray's hit counts beyond this.
+        primary_t_min: f32,
+        /// A shadow or reflection ray's hit counts beyond this.
+        secondary_t_min: f32,
+        /// Added to 255·c before the fraction is cut off.
+        quantize_bias: f32,
+        /// Place of this dispatch's first tile in the list.
+        first_tile: u32,
+        /// Number of spheres.
+        sphere_count: u32,
+        /// Number of lights.
+        light_count: u32,
+        /// Greatest number of reflection bounces.
+        max_depth: u32,
+        /// To the size that WGSL gives the struct.
+        padding: [u32; 2],
+    }
 }
 
-/// What only shading reads of a sphere.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-pub struct Material {
-    /// Object colour.
-    pub color: [f32; 3],
-    /// Ambient coefficient.
-    pub ka: f32,
-    /// Object to world space.
-    pub scale: [f32; 3],
-    /// Diffuse coefficient.
-    pub kd: f32,
-    /// Specular coefficient.
-    pub ks: f32,
-    /// Reflection coefficient.
-    pub kr: f32,
-    /// Specular exponent.
-    pub n: f32,
-    /// To the size that WGSL gives the struct.
-    pub padding: u32,
+shader_struct! {
+    /// What the intersection reads of a sphere.
+    Shape {
+        /// Centre in world space.
+        center: [f32; 3],
+        /// Radius in object space.
+        radius: f32,
+        /// World to object space.
+        inv_scale: [f32; 3],
+        /// Lowest index of a sphere with this very surface.
+        index: u32,
+    }
 }
 
-/// One point light.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-pub struct Light {
-    /// Position in world space.
-    pub position: [f32; 3],
-    /// To the alignment that WGSL gives the next vector.
-    pub padding0: u32,
-    /// Intensity.
-    pub intensity: [f32; 3],
-    /// To the size that WGSL gives the struct.
-    pub padding1: u32,
+shader_struct! {
+    /// What only shading reads of a sphere.
+    Material {
+        /// Object colour.
+        color: [f32; 3],
+        /// Ambient coefficient.
+        ka: f32,
+        /// Object to world space.
+        scale: [f32; 3],
+        /// Diffuse coefficient.
+        kd: f32,
+        /// Specular coefficient.
+        ks: f32,
+        /// Reflection coefficient.
+        kr: f32,
+        /// Specular exponent.
+        n: f32,
+        /// To the size that WGSL gives the struct.
+        padding: u32,
+    }
+}
+
+shader_struct! {
+    /// One point light.
+    Light {
+        /// Position in world space.
+        position: [f32; 3],
+        /// To the alignment that WGSL gives the next vector.
+        padding0: u32,
+        /// Intensity.
+        intensity: [f32; 3],
+        /// To the size that WGSL gives the struct.
+        padding1: u32,
+    }
 }
 
 const _: () = {

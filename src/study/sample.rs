@@ -1,0 +1,61 @@
+//! Repeated timings of one thing, and what can be trusted of them.
+
+use serde::Serialize;
+
+/// Times of several runs, in ms.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Sample {
+    runs: Vec<f64>,
+}
+
+impl Sample {
+    /// Adds one run.
+    pub fn push(&mut self, ms: f64) {
+        self.runs.push(ms);
+    }
+
+    /// All runs, in the order in which they were made.
+    pub fn runs(&self) -> &[f64] {
+        &self.runs
+    }
+
+    fn sorted(&self) -> Vec<f64> {
+        let mut sorted = self.runs.clone();
+        sorted.sort_by(f64::total_cmp);
+        sorted
+    }
+
+    /// The value below which the fraction `q` of the runs lies, linear between runs; NaN without runs.
+    fn quantile(&self, q: f64) -> f64 {
+        let sorted = self.sorted();
+        let Some(last) = sorted.len().checked_sub(1) else {
+            return f64::NAN;
+        };
+        let place = q * last as f64;
+        let (low, fraction) = (place as usize, place.fract());
+        sorted[low] + fraction * (sorted[(low + 1).min(last)] - sorted[low])
+    }
+
+    /// The median; NaN without runs.
+    pub fn median(&self) -> f64 {
+        self.quantile(0.5)
+    }
+
+    /// The least run; NaN without runs.
+    pub fn min(&self) -> f64 {
+        self.quantile(0.0)
+    }
+
+    /// The greatest run; NaN without runs.
+    pub fn max(&self) -> f64 {
+        self.quantile(1.0)
+    }
+
+    /// How many runs lie outside Tukey's fences, 1.5 times the interquartile range beyond the quartiles (J. W. Tukey,
+    /// Exploratory Data Analysis, 1977): something else was running.
+    pub fn outliers(&self) -> usize {
+        let (low, high) = (self.quantile(0.25), self.quantile(0.75));
+        let reach = 1.5 * (high - low);
+        self.runs.iter().filter(|&&run| run < low - reach || run > high + reach).count()
+    }
+}

@@ -1,0 +1,332 @@
+//! The program as its users run it: exit codes, messages, files.
+
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use tempfile::TempDir;
+
+use crate::support::gpu;
+
+const SCENE: &str = "NEAR 1\nLEFT -1\nRIGHT 1\nBOTTOM -1\nTOP 1\nRES 16 8\nSPHERE s 0 0 -5 2 2 2 1 0 0 1 0 0 0 1\n\
+                     AMBIENT 1 1 1\nBACK 0 0 1\nOUTPUT out.ppm\n";
+
+/// A folder with `scene.txt` in it, where the program runs.
+struct Place(TempDir);
+
+impl Place {
+    fn new(scene: &str) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("scene.txt"), scene).unwrap();
+        Self(folder)
+    }
+
+    fn path(&self) -> &Path {
+        self.0.path()
+    }
+
+    fn command(&self, arguments: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_trueray"));
+        command.args(arguments.split_whitespace()).current_dir(self.path()).stdin(Stdio::null());
+        for variable in ["WGPU_ADAPTER_NAME", "WGPU_BACKEND", "WGPU_POWER_PREF"] {
+            command.env_remove(variable);
+        }
+        command
+    }
+
+    fn run(&self, arguments: &str) -> Output {
+        self.command(arguments).output().unwrap()
+    }
+
+    /// Runs without any Vulkan driver.
+    fn run_without_driver(&self, arguments: &str) -> Output {
+        let nowhere = self.path().join("no-driver.json");
+        let mut command = self.command(arguments);
+        command.env("VK_DRIVER_FILES", &nowhere).env("VK_ICD_FILENAMES", &nowhere).output().unwrap()
+    }
+
+    fn files(&self) -> Vec<String> {
+        let entries = std::fs::read_dir(self.path()).unwrap();
+        let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+}
+
+#[track_caller]
+fn assert_exit(output: &Output, code: i32, message: &str) {
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{stderr}");
+    assert!(stderr.contains(message), "expected '{message}' in:\n{stderr}");
+    assert!(!stderr.contains("panicked"), "{stderr}");
+}
+
+#[test]
+fn one_argument_writes_output_into_the_working_directory() {
+    let place = Place::new(SCENE);
+    let folder = tempfile::tempdir().unwrap();
+    let scene = place.path().join("scene.txt");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_trueray"));
+    let output = command.arg(&scene).current_dir(folder.path()).output().unwrap();
+    assert_exit(&output, 0, "out.ppm: 16 × 8 on ");
+    let picture = std::fs::read(folder.path().join("out.ppm")).unwrap();
+    assert!(picture.starts_with(b"P6\n16 8\n255\n"));
+    assert_eq!(picture.len(), 12 + 16 * 8 * 3);
+    assert_eq!(place.files(), ["scene.txt"]);
+}
+
+#[test]
+fn without_output_the_scene_names_the_picture() {
+    let place = Place::new(&SCENE.replace("OUTPUT out.ppm\n", ""));
+    assert_exit(&place.run("render --device cpu scene.txt"), 0, "scene.ppm");
+    assert_eq!(place.files(), ["scene.ppm", "scene.txt"]);
+}
+
+#[test]
+fn renders_without_a_driver_on_the_reference_and_says_so() {
+    let place = Place::new(SCENE);
+    let output = place.run_without_driver("scene.txt");
+    assert_exit(&output, 0, "no Vulkan device was found, rendering on the CPU reference");
+    assert_exit(&output, 0, "on the CPU reference (f64)");
+    assert_eq!(place.files(), ["out.ppm", "scene.txt"]);
+}
+
+#[test]
+fn a_required_device_never_falls_back() {
+    let place = Place::new(SCENE);
+    assert_exit(&place.run_without_driver("render --device gpu scene.txt"), 4, "no Vulkan device was found");
+    assert_exit(&place.run_without_driver("render --device 0 scene.txt"), 4, "no Vulkan device was found");
+    assert_exit(&place.run_without_driver("devices"), 4, "mesa-vulkan-drivers");
+    assert_eq!(place.files(), ["scene.txt"]);
+}
+
+#[test]
+fn a_device_that_is_not_there_lists_those_that_are() {
+    let Some(gpu) = gpu("a_device_that_is_not_there_lists_those_that_are") else { return };
+    let place = Place::new(SCENE);
+    let name = &gpu.info.name;
+    for arguments in ["render --device 99 scene.txt", "render --device no-such-device scene.txt"] {
+        let output = place.run(arguments);
+        assert_exit(&output, 4, "there are:\n  0: ");
+        assert_exit(&output, 4, name);
+    }
+    let output = place.command("scene.txt").env("WGPU_ADAPTER_NAME", "no-such-device").output().unwrap();
+    assert_exit(&output, 4, "WGPU_ADAPTER_NAME 'no-such-device' matches no Vulkan device; there are:");
+    let output = place.command("scene.txt").env("WGPU_BACKEND", "gl").output().unwrap();
+    assert_exit(&output, 4, "WGPU_BACKEND leaves out Vulkan");
+    assert_eq!(place.files(), ["scene.txt"]);
+
+    let list = place.run("devices --json");
+    let list: serde_json::Value = serde_json::from_slice(&list.stdout).unwrap();
+    assert_eq!(list[gpu.info.index]["name"], name.as_str());
+    assert!(list[gpu.info.index]["f64"].is_boolean());
+    assert_exit(&place.run(&format!("render --device {} scene.txt", gpu.info.index)), 0, name);
+}
+
+#[test]
+fn cpu_and_gpu_write_the_same_simple_picture() {
+    let Some(_gpu) = gpu("cpu_and_gpu_write_the_same_simple_picture") else { return };
+    let place = Place::new(SCENE);
+    assert_exit(&place.run("render --device cpu -o cpu.ppm scene.txt"), 0, "");
+    assert_exit(&place.run("render --device gpu -o gpu.ppm scene.txt"), 0, "");
+    let [cpu, gpu] = ["cpu.ppm", "gpu.ppm"].map(|name| std::fs::read(place.path().join(name)).unwrap());
+    assert!(cpu == gpu);
+    assert_exit(&place.run("compare cpu.ppm gpu.ppm"), 0, "");
+    assert_exit(&place.run("compare --scene scene.txt gpu.ppm"), 0, "");
+}
+
+/// Every kind of bad input: exit code 3, a message that names the place, and no picture touched.
+#[test]
+fn bad_scenes_are_refused_and_touch_nothing() {
+    let statement = |line: &str| format!("{SCENE}{line}\n");
+    let cases = [
+        (SCENE.replace("TOP 1", "TP 1"), "TOP"),
+        (SCENE.replace("NEAR 1", "NEAR 1 1 1"), "NEAR"),
+        (SCENE.replace("NEAR 1\n", ""), "NEAR"),
+        (SCENE.replace("NEAR 1", "NEAR 0"), "NEAR"),
+        (SCENE.replace("RIGHT 1", "RIGHT -1"), "RIGHT"),
+        (SCENE.replace("RES 16 8", "RES 16 0"), "RES"),
+        (SCENE.replace("RES 16 8", "RES 1.5 8"), "1.5"),
+        (SCENE.replace("2 2 2", "2 0 2"), "0"),
+        (SCENE.replace("2 2 2", "2 nan 2"), "nan"),
+        (SCENE.replace("2 2 2", "2 inf 2"), "inf"),
+        (SCENE.replace("2 2 2", "2 two 2"), "two"),
+        (SCENE.replace("out.ppm", "folder/out.ppm"), "folder/out.ppm"),
+        (statement("RES 4 4"), "RES"),
+        (statement("CUBE c 0 0 0 1 1 1"), "CUBE"),
+        (statement("SPHERE t 0 0 -5 1 1 1 1 1 1 1 1 1 50"), "Kr"),
+        (statement("SPHERE t 0 0 -5 1 1 1 1 1 1 1 1 1 0 50 1 1 1 1"), "SPHERE"),
+        (statement("SPHERE t 0 0 -5 1 1 1 1 1 1 1 1 1 0 50 0.5 1.5"), "refraction cannot be rendered yet"),
+        ("\u{0}\u{1}\u{2}".into(), "scene.txt"),
+        (String::new(), "NEAR"),
+    ];
+    for (scene, message) in cases {
+        let place = Place::new(&scene);
+        std::fs::write(place.path().join("out.ppm"), "old").unwrap();
+        let output = place.run("render --device cpu scene.txt");
+        assert_exit(&output, 3, message);
+        assert_exit(&output, 3, "scene.txt:");
+        assert_eq!(std::fs::read(place.path().join("out.ppm")).unwrap(), b"old");
+        assert_eq!(place.files(), ["out.ppm", "scene.txt"]);
+    }
+    let place = Place::new(SCENE);
+    assert_exit(&place.run("nowhere.txt"), 3, "cannot read the scene nowhere.txt");
+    assert_exit(&place.run("render --device cpu ."), 3, "cannot read the scene .");
+}
+
+#[test]
+fn a_bad_scene_does_not_keep_the_others_from_being_rendered() {
+    let place = Place::new(SCENE);
+    std::fs::write(place.path().join("bad.txt"), "NEAR").unwrap();
+    assert_exit(&place.run("render --device cpu bad.txt scene.txt"), 3, "out.ppm: 16 × 8");
+    assert_eq!(place.files(), ["bad.txt", "out.ppm", "scene.txt"]);
+}
+
+#[test]
+fn wrong_arguments_are_usage_errors() {
+    let place = Place::new(SCENE);
+    for arguments in [
+        "",
+        "render",
+        "render --res 0x5 scene.txt",
+        "render --res 5 scene.txt",
+        "render --effects fog scene.txt",
+        "render --convention wrong scene.txt",
+        "render --secondary-epsilon 2 scene.txt",
+        "render --max-depth 99999 scene.txt",
+        "render --format bmp scene.txt",
+        "render -o a.ppm scene.txt scene.txt",
+        "compare a.ppm",
+        "compare --scene scene.txt --device cpu",
+        "compare missing.ppm missing.ppm",
+    ] {
+        assert_exit(&place.run(arguments), 2, "");
+        assert_eq!(place.files(), ["scene.txt"], "{arguments}");
+    }
+}
+
+#[test]
+fn output_that_cannot_be_written_is_its_own_code() {
+    let place = Place::new(SCENE);
+    assert_exit(&place.run("render --device cpu -o missing/out.ppm scene.txt"), 6, "missing/out.ppm");
+    assert_exit(&place.run("render --device cpu -o scene.txt scene.txt"), 6, "would overwrite its own scene file");
+    assert_eq!(std::fs::read_to_string(place.path().join("scene.txt")).unwrap(), SCENE);
+    assert_exit(&place.run("render --device cpu --stats-json missing/stats.json scene.txt"), 6, "missing/stats.json");
+}
+
+#[test]
+fn pictures_go_to_standard_output_in_every_format() {
+    let place = Place::new(SCENE);
+    for (format, magic) in [("p6", &b"P6\n16 8\n255\n"[..]), ("p3", b"P3\n16 8\n255\n"), ("png", b"\x89PNG\r\n")] {
+        let output = place.run(&format!("render --device cpu --format {format} -o - scene.txt"));
+        assert_exit(&output, 0, "standard output: 16 × 8");
+        assert!(output.stdout.starts_with(magic));
+    }
+    assert_eq!(place.files(), ["scene.txt"]);
+}
+
+#[test]
+fn a_scene_comes_from_standard_input() {
+    let place = Place::new(SCENE);
+    let file = std::fs::File::open(place.path().join("scene.txt")).unwrap();
+    let output = place.command("render --device cpu -q -").stdin(file).output().unwrap();
+    assert_exit(&output, 0, "");
+    assert!(output.stderr.is_empty());
+    assert_eq!(place.files(), ["out.ppm", "scene.txt"]);
+}
+
+#[test]
+fn stats_tell_device_effects_rays_and_times() {
+    let place = Place::new(SCENE);
+    assert_exit(&place.run("render --device cpu --res 20x10 --stats-json stats.json scene.txt"), 0, "20 × 10");
+    let stats = std::fs::read_to_string(place.path().join("stats.json")).unwrap();
+    let stats: serde_json::Value = serde_json::from_str(&stats).unwrap();
+    assert_eq!(stats["device"], "the CPU reference (f64)");
+    assert_eq!(stats["effects"]["set"], serde_json::json!(["ambient"]));
+    assert_eq!(stats["rays"]["primary"], 200);
+    for time in ["parse_ms", "prepare_ms", "compile_ms", "render_ms", "read_back_ms", "write_ms", "total_ms"] {
+        assert!(stats[time].is_f64(), "{time}");
+    }
+    assert_exit(&place.run("render --device cpu --stats --explain scene.txt"), 0, "effects (reflection depth 0)");
+}
+
+#[test]
+fn check_summarises_without_rendering() {
+    let place = Place::new(SCENE);
+    let output = place.run("check scene.txt");
+    assert_exit(&output, 0, "");
+    let text = String::from_utf8(output.stdout).unwrap();
+    for part in ["16 × 8, 1 spheres, 0 lights", "(-2, -2, -7) to (2, 2, -3)", "sphere 's' has Ka > 0", "no warnings"] {
+        assert!(text.contains(part), "{part} in {text}");
+    }
+    std::fs::write(place.path().join("bad.txt"), SCENE.replace("TOP", "TP")).unwrap();
+    let output = place.run("check --json scene.txt bad.txt");
+    assert_exit(&output, 3, "");
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((&json[0]["ok"], &json[1]["ok"]), (&true.into(), &false.into()));
+    assert_eq!(json[1]["messages"][0]["token"], "TP");
+    assert_eq!(json[1]["messages"][0]["line"], 5);
+    assert_eq!(place.files(), ["bad.txt", "scene.txt"]);
+}
+
+#[test]
+fn compare_has_three_exit_codes_and_draws_its_findings() {
+    let place = Place::new(SCENE);
+    assert_exit(&place.run("render --device cpu -q -o a.ppm scene.txt"), 0, "");
+    assert_exit(&place.run("render --device cpu -q --effects none -o b.png scene.txt"), 0, "");
+    assert_exit(&place.run("compare a.ppm a.ppm"), 0, "");
+    let output = place.run("compare a.ppm b.png --heatmap heat.png --three-wide wide.ppm");
+    assert_exit(&output, 1, "");
+    assert!(String::from_utf8(output.stdout).unwrap().contains("verdict           different"));
+    assert_exit(&place.run("compare a.ppm b.png --max-differing 1000"), 0, "");
+    assert_exit(&place.run("compare a.ppm b.png --max-level 254"), 1, "");
+    assert_exit(&place.run("compare a.ppm missing.ppm"), 2, "missing.ppm");
+    let json = place.run("compare --json a.ppm b.png");
+    assert_exit(&json, 1, "");
+    let json: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    assert_eq!(json["max_level"], 255);
+
+    // A picture that is not the scene's is unexplained.
+    let output = place.run("compare --scene scene.txt b.png");
+    assert_exit(&output, 1, "");
+    assert!(String::from_utf8(output.stdout).unwrap().contains("unexplained"));
+    assert_exit(&place.run("compare --scene scene.txt a.ppm"), 0, "");
+    assert_exit(&place.run("compare --scene scene.txt --res 9x9 a.ppm"), 2, "9 × 9");
+    assert_eq!(place.files(), ["a.ppm", "b.png", "heat.png", "scene.txt", "wide.ppm"]);
+}
+
+#[test]
+fn pictures_are_the_same_bytes_every_time() {
+    let place = Place::new(SCENE);
+    for format in ["p6", "p3", "png"] {
+        let run = || place.run(&format!("render --format {format} -o - scene.txt")).stdout;
+        assert!(run() == run(), "{format}");
+    }
+}
+
+/// 400 million pixels pass through a bounded buffer.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_huge_picture_needs_little_memory() {
+    let place = Place::new(&SCENE.replace("RES 16 8", "RES 20000 20000"));
+    let scene = place.path().join("scene.txt");
+    let small = peak_memory(place.command("render -q --res 8x8 -o /dev/null scene.txt"));
+    let huge = peak_memory(place.command("render -q -o /dev/null scene.txt"));
+    assert!(scene.exists());
+    assert!(huge - small < 512 << 10, "{huge} KiB, {small} KiB of them for 8 × 8 pixels");
+}
+
+/// The greatest resident size of a successful run, in KiB.
+#[cfg(target_os = "linux")]
+fn peak_memory(mut command: Command) -> i64 {
+    let mut child = command.spawn().unwrap();
+    let status = format!("/proc/{}/status", child.id());
+    let mut peak = 0;
+    while child.try_wait().unwrap().is_none() {
+        let text = std::fs::read_to_string(&status).unwrap_or_default();
+        let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+        peak = line.and_then(|line| line.trim().strip_suffix(" kB")?.parse().ok()).unwrap_or(0).max(peak);
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    assert!(child.wait().unwrap().success());
+    peak
+}

@@ -1,0 +1,68 @@
+//! The assignment's official pictures, from the folder that `TRUERAY_KEYS` names.
+
+use std::io::Write as _;
+use std::path::PathBuf;
+
+use trueray::compare::{Difference, Explanation};
+use trueray::cpu::{Judge, Reference};
+use trueray::effects::Effects;
+use trueray::film::{Leniency, Picture, read_picture};
+use trueray::scene::Scene;
+use trueray::settings::Settings;
+
+use crate::support::{cpu_picture, gpu, gpu_picture, scene};
+
+/// Scene and official picture of each key in the folder; `None`, said aloud, where no folder is named.
+fn keys(test: &str) -> Option<Vec<(String, Scene, Picture)>> {
+    let Some(folder) = std::env::var_os("TRUERAY_KEYS") else {
+        writeln!(std::io::stderr(), "{test}: skipped: TRUERAY_KEYS names no folder of official pictures").unwrap();
+        return None;
+    };
+    let folder = PathBuf::from(folder);
+    let mut keys = Vec::new();
+    for entry in std::fs::read_dir(&folder).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        if let Some(subject) = name.strip_prefix("key").and_then(|name| name.strip_suffix(".png")) {
+            let scene = scene(&folder.join(format!("test{subject}.txt")));
+            let key = read_picture(&folder.join(&name), Leniency::Strict).unwrap().picture;
+            keys.push((subject.to_owned(), scene, key));
+        }
+    }
+    assert!(!keys.is_empty(), "no key*.png in {}", folder.display());
+    Some(keys)
+}
+
+#[test]
+fn reference_matches_every_key_bit_for_bit() {
+    let Some(keys) = keys("reference_matches_every_key_bit_for_bit") else { return };
+    let settings = Settings::classic();
+    for (subject, scene, key) in keys {
+        let effects = Effects::of(&scene, &settings);
+        let (picture, _) = cpu_picture::<f64>(&scene, &settings, &effects);
+        let difference = Difference::between(&picture, &key).unwrap();
+        // The official Illum picture itself is off by one level in 3 pixels.
+        let allowed = if subject == "Illum" { 3 } else { 0 };
+        assert!(difference.differing.over_0 <= allowed, "{subject}:\n{}", difference.report("reference", "key"));
+        assert_eq!(difference.differing.over_1, 0, "{subject}");
+    }
+}
+
+#[test]
+fn gpu_matches_every_key_within_f32() {
+    let test = "gpu_matches_every_key_within_f32";
+    let (Some(keys), Some(gpu)) = (keys(test), gpu(test)) else { return };
+    let settings = Settings::classic();
+    for (subject, scene, key) in keys {
+        let effects = Effects::of(&scene, &settings);
+        let (picture, not_finite) = gpu_picture(&gpu, &scene, &settings, &effects);
+        let difference = Difference::between(&picture, &key).unwrap();
+        let report = difference.report("GPU", "key");
+        assert!(difference.differing.over_0 <= 40 && difference.differing.over_1 <= 8, "{subject}:\n{report}");
+        assert_eq!(not_finite, 0, "{subject}");
+
+        let reference = Reference::new(&scene, &settings, &effects);
+        let (expected, _) = cpu_picture::<f64>(&scene, &settings, &effects);
+        let explanation = Explanation::of(&picture, &expected, &reference, &Judge::SINGLE);
+        assert_eq!(explanation.unexplained, 0, "{subject}:\n{}", explanation.report());
+    }
+}

@@ -1,0 +1,17 @@
+//! All integration tests in one binary, so that they share one device.
+//!
+//! Tests that need a Vulkan device say `skipped: no Vulkan device` where there is none; with `TRUERAY_REQUIRE_GPU=1` that is
+//! a failure. The official pictures are looked for in the folder that `TRUERAY_KEYS` names.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+#![allow(missing_docs, reason = "test names say what they test")]
+
+mod cli;
+mod compare;
+mod effects;
+mod film;
+mod keys;
+mod parse;
+mod pictures;
+mod shaders;
+mod support;

@@ -1,0 +1,172 @@
+//! Every scene of `scenes/`, rendered by everything that renders.
+
+use std::path::Path;
+
+use trueray::compare::Explanation;
+use trueray::cpu::{Judge, Reference};
+use trueray::effects::{Effect, EffectSet, Effects, Request};
+use trueray::engine::{Engine, render_bands};
+use trueray::film::Picture;
+use trueray::gpu::GpuRenderer;
+use trueray::settings::{Settings, Specular};
+use trueray::{gpu, tiles};
+
+use crate::support::{cpu_picture, gpu, gpu_picture, scene, scene_files, scene_of};
+
+/// Scenes whose every pixel all tiers promise.
+const ORDINARY: [&str; 2] = ["basic", "effects"];
+
+fn conventions() -> [(&'static str, Settings); 3] {
+    let blinn = Settings { specular: Specular::Blinn, max_depth: 5, ..Settings::exact() };
+    [("classic", Settings::classic()), ("exact", Settings::exact()), ("exact, blinn, depth 5", blinn)]
+}
+
+/// Runs `check` for every ordinary scene in every convention.
+fn for_each_case(check: impl Fn(&str, &trueray::scene::Scene, &Settings)) {
+    for file in scene_files(&ORDINARY) {
+        let scene = scene(&file);
+        for (name, settings) in conventions() {
+            check(&format!("{}, {name}", short(&file)), &scene, &settings);
+        }
+    }
+}
+
+fn short(file: &Path) -> String {
+    file.file_stem().unwrap().to_string_lossy().into_owned()
+}
+
+fn assert_explained(case: &str, picture: &Picture, scene: &trueray::scene::Scene, settings: &Settings) {
+    let effects = Effects::of(scene, settings);
+    let (expected, not_finite) = cpu_picture::<f64>(scene, settings, &effects);
+    assert_eq!(not_finite, 0, "{case}: reference");
+    let reference = Reference::new(scene, settings, &effects);
+    let explanation = Explanation::of(picture, &expected, &reference, &Judge::SINGLE);
+    assert_eq!(explanation.unexplained, 0, "{case}:\n{}", explanation.report());
+}
+
+#[test]
+fn gpu_differs_from_the_reference_only_where_explained() {
+    let Some(gpu) = gpu("gpu_differs_from_the_reference_only_where_explained") else { return };
+    for_each_case(|case, scene, settings| {
+        let (picture, not_finite) = gpu_picture(&gpu, scene, settings, &Effects::of(scene, settings));
+        assert_eq!(not_finite, 0, "{case}");
+        assert_explained(case, &picture, scene, settings);
+    });
+}
+
+/// The same algorithm in the shader's precision without a driver: what it explains is no driver's doing.
+#[test]
+fn single_precision_differs_from_the_reference_only_where_explained() {
+    for_each_case(|case, scene, settings| {
+        let (picture, not_finite) = cpu_picture::<f32>(scene, settings, &Effects::of(scene, settings));
+        assert_eq!(not_finite, 0, "{case}");
+        assert_explained(case, &picture, scene, settings);
+    });
+}
+
+#[test]
+fn what_a_scene_does_not_call_for_changes_no_byte_on_the_gpu() {
+    let Some(gpu) = gpu("what_a_scene_does_not_call_for_changes_no_byte_on_the_gpu") else { return };
+    for_each_case(|case, scene, settings| {
+        let all = Effects::requested(scene, settings, &Request::Exactly(EffectSet::ALL));
+        let (specialised, _) = gpu_picture(&gpu, scene, settings, &Effects::of(scene, settings));
+        let (generic, _) = gpu_picture(&gpu, scene, settings, &all);
+        assert!(specialised == generic, "{case}: {}", Effects::of(scene, settings).set);
+    });
+}
+
+#[test]
+fn what_a_scene_does_not_call_for_changes_no_byte_on_the_cpu() {
+    for_each_case(|case, scene, settings| {
+        let all = Effects::requested(scene, settings, &Request::Exactly(EffectSet::ALL));
+        let (specialised, _) = cpu_picture::<f64>(scene, settings, &Effects::of(scene, settings));
+        let (generic, _) = cpu_picture::<f64>(scene, settings, &all);
+        assert!(specialised == generic, "{case}: {}", Effects::of(scene, settings).set);
+    });
+}
+
+/// For each effect there is a scene of its name that needs it.
+#[test]
+fn switching_off_a_needed_effect_changes_the_picture() {
+    let Some(gpu) = gpu("switching_off_a_needed_effect_changes_the_picture") else { return };
+    let settings = Settings::classic();
+    for effect in Effect::ALL {
+        let scene = scene(&crate::support::root().join(format!("scenes/effects/{effect}.txt")));
+        let needed = Effects::of(&scene, &settings);
+        assert!(needed.set.has(effect), "{effect}");
+        let without = Effects::requested(&scene, &settings, &Request::Changed(vec![(effect, false)]));
+        assert!(
+            gpu_picture(&gpu, &scene, &settings, &needed) != gpu_picture(&gpu, &scene, &settings, &without),
+            "{effect}"
+        );
+        let [with, without] = [needed, without].map(|effects| cpu_picture::<f64>(&scene, &settings, &effects));
+        assert!(with != without, "{effect} on the CPU");
+    }
+}
+
+#[test]
+fn bands_give_the_same_bytes_as_one_piece() {
+    let Some(gpu) = gpu("bands_give_the_same_bytes_as_one_piece") else { return };
+    let scene = scene(&crate::support::root().join("scenes/effects/reflections.txt"));
+    let settings = Settings::classic();
+    let effects = Effects::of(&scene, &settings);
+    let (whole, _) = gpu_picture(&gpu, &scene, &settings, &effects);
+    let mut renderer = GpuRenderer::new(&gpu, &scene, &settings, &effects).unwrap();
+    let row_bytes = scene.width as usize * 3;
+    let mut pieces = Vec::new();
+    let mut first = 0;
+    for tile_rows in [1, 3, 2, 1000] {
+        let rows = (tile_rows * tiles::TILE).min(scene.height - first);
+        let mut rgb = vec![0; row_bytes * rows as usize];
+        renderer.rows(first, &mut rgb).unwrap();
+        pieces.extend(rgb);
+        first += rows;
+    }
+    assert!(whole.rgb() == pieces);
+}
+
+/// A picture of many bands, dispatches that stay short, and the same rays as the reference.
+#[test]
+fn a_large_picture_is_rendered_in_short_dispatches() {
+    let Some(gpu) = gpu("a_large_picture_is_rendered_in_short_dispatches") else { return };
+    let mut scene = scene_of("SPHERE s 0 0 -5 2 2 2 1 1 1 1 0 0 0 1\nAMBIENT 1 1 1\nBACK 0 0 1");
+    (scene.width, scene.height) = (4001, 3003);
+    let settings = Settings::classic();
+    let effects = Effects::of(&scene, &settings);
+    let mut engine = Engine::new(Some(&gpu), &scene, &settings, &effects).unwrap();
+    let mut white = 0_u64;
+    let mut bands = 0;
+    render_bands(&mut engine, (scene.width, scene.height), |band| {
+        bands += 1;
+        white += band.rgb.as_chunks::<3>().0.iter().filter(|pixel| **pixel == [255; 3]).count() as u64;
+        Ok::<_, gpu::Error>(())
+    })
+    .unwrap();
+    assert!(bands > 1);
+    let mut rgb = vec![0; scene.width as usize * scene.height as usize * 3];
+    Reference::<f64>::new(&scene, &settings, &effects).rows(0, &mut rgb);
+    let expected = rgb.as_chunks::<3>().0.iter().filter(|pixel| **pixel == [255; 3]).count() as u64;
+    assert!(white.abs_diff(expected) <= 40, "{white} {expected}"); // silhouettes
+    let times = engine.times();
+    assert!(times.dispatches > 1 && times.longest_dispatch_ms > 0.0);
+}
+
+#[test]
+fn gpu_counts_the_rays_of_the_reference() {
+    let Some(gpu) = gpu("gpu_counts_the_rays_of_the_reference") else { return };
+    let scene = scene_of(
+        "SPHERE a 0 0 -5 1 1 1 1 1 1 0 1 0 0.5 1\nSPHERE b 1.5 0 -4 0.5 0.5 0.5 1 1 1 0 1 0 0.5 1\nLIGHT l 3 4 1 1 1 1",
+    );
+    let settings = Settings::classic();
+    let effects = Effects::of(&scene, &settings);
+    let count = |gpu| {
+        let mut engine = Engine::new(gpu, &scene, &settings, &effects).unwrap();
+        engine.count_rays();
+        trueray::engine::render_picture(&mut engine, &scene).unwrap();
+        engine.rays().unwrap()
+    };
+    let (on_gpu, on_cpu) = (count(Some(&*gpu)), count(None));
+    assert_eq!((on_gpu.shadow, on_gpu.reflection), (on_cpu.shadow, on_cpu.reflection));
+    // Tiles without spheres need no rays on the GPU.
+    assert!(on_gpu.primary < on_cpu.primary && on_gpu.primary > 0);
+}

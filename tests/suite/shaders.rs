@@ -1,0 +1,93 @@
+//! The composed WGSL: every effect set is valid, and the structs are those of the host.
+
+use trueray::effects::EffectSet;
+use trueray::gpu::layout::{Light, Material, Params, Shape};
+use trueray::gpu::{ENTRY_POINT, Module, Specialisation};
+
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+
+fn validate(module: &naga::Module) -> naga::valid::ModuleInfo {
+    Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(module).unwrap()
+}
+
+#[test]
+fn every_effect_set_is_valid() {
+    for few in [None, Some([3, 2])] {
+        let module = Module::render(few.is_some()).parse().unwrap();
+        let info = validate(&module);
+        for effects in EffectSet::every() {
+            for flags in 0..8 {
+                let [skip_self, blinn, count_rays] = [1, 2, 4].map(|bit| flags & bit != 0);
+                let specialisation = Specialisation { effects, skip_self, blinn, few, count_rays };
+                let constants = specialisation.constants().into_iter().map(|(name, value)| (name.to_owned(), value));
+                let constants = constants.collect();
+                let entry_point = Some((naga::ShaderStage::Compute, ENTRY_POINT));
+                let (specialised, _) =
+                    naga::back::pipeline_constants::process_overrides(&module, &info, entry_point, &constants).unwrap();
+                validate(&specialised);
+            }
+        }
+    }
+}
+
+/// A constant that the shader does not declare would be ignored silently by the validation above.
+#[test]
+fn every_constant_is_an_override_and_every_override_is_set() {
+    for few in [None, Some([1, 1])] {
+        let module = Module::render(few.is_some()).parse().unwrap();
+        let mut declared: Vec<_> = module.overrides.iter().map(|(_, o)| o.name.clone().unwrap()).collect();
+        let specialisation =
+            Specialisation { effects: EffectSet::ALL, skip_self: true, blinn: true, few, count_rays: true };
+        let mut set: Vec<_> = specialisation.constants().into_iter().map(|(name, _)| name.to_owned()).collect();
+        declared.sort();
+        set.sort();
+        assert_eq!(declared, set);
+    }
+}
+
+#[test]
+fn structs_lie_in_memory_as_the_shader_reads_them() {
+    let module = Module::render(false).parse().unwrap();
+    let structs: [(&str, &[(&str, usize)], usize); 4] = [
+        ("Params", Params::FIELDS, size_of::<Params>()),
+        ("Shape", Shape::FIELDS, size_of::<Shape>()),
+        ("Material", Material::FIELDS, size_of::<Material>()),
+        ("Light", Light::FIELDS, size_of::<Light>()),
+    ];
+    for (name, fields, size) in structs {
+        let (_, found) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).unwrap();
+        let naga::TypeInner::Struct { members, span } = &found.inner else { panic!("{name}") };
+        let shader: Vec<_> = members.iter().map(|m| (m.name.as_deref().unwrap(), m.offset as usize)).collect();
+        let host: Vec<_> = fields.iter().copied().filter(|(field, _)| !field.starts_with("padding")).collect();
+        assert_eq!(host, shader, "{name}");
+        assert_eq!(size, *span as usize, "{name}");
+    }
+}
+
+#[test]
+fn bindings_are_numbered_without_gaps() {
+    for few in [false, true] {
+        let module = Module::render(few).parse().unwrap();
+        let mut bindings: Vec<_> =
+            module.global_variables.iter().filter_map(|(_, v)| Some((v.binding?.binding, v.name.clone()?))).collect();
+        bindings.sort();
+        let names: Vec<_> = bindings.iter().map(|(_, name)| name.as_str()).collect();
+        let expected = ["params", "shapes", "materials", "lights", "columns", "rows", "tiles", "pixels", "ray_counts"];
+        assert_eq!(names, expected);
+        assert!(bindings.iter().enumerate().all(|(i, (binding, _))| i as u32 == *binding));
+    }
+}
+
+#[test]
+fn an_error_in_the_shader_names_its_file_and_line() {
+    let mut module = Module::render(false);
+    let line = 1 + module.text.lines().position(|line| line.contains("fn trace(")).unwrap() as u32;
+    let (file, line_in_file) = module.place(line);
+    assert_eq!(file, "shaders/trace.wgsl");
+    let text = std::fs::read_to_string(crate::support::root().join(&file)).unwrap();
+    assert!(text.lines().nth(line_in_file as usize - 1).unwrap().contains("fn trace("));
+
+    module.text = module.text.replace("fn trace(primary: Ray)", "fn trace(primary: Roy)");
+    let error = module.parse().unwrap_err();
+    assert!(error.contains(&format!("shaders/trace.wgsl:{line_in_file}:")), "{error}");
+}

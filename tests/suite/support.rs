@@ -1,0 +1,81 @@
+//! What several test modules share.
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
+
+use trueray::cpu::{Real, Reference};
+use trueray::effects::Effects;
+use trueray::engine::{Engine, render_picture};
+use trueray::film::Picture;
+use trueray::gpu::{Choice, Gpu};
+use trueray::scene::{Scene, parse};
+use trueray::settings::Settings;
+
+/// The one device of all tests, or `None`, said aloud, where there is none and none is required.
+pub(crate) fn gpu(test: &str) -> Option<MutexGuard<'static, Gpu>> {
+    static GPU: OnceLock<Result<Mutex<Gpu>, String>> = OnceLock::new();
+    match GPU.get_or_init(|| Gpu::open(&Choice::Gpu).map(Mutex::new).map_err(|error| error.to_string())) {
+        Ok(gpu) => Some(gpu.lock().unwrap_or_else(PoisonError::into_inner)),
+        Err(error) => {
+            assert!(!is_set("TRUERAY_REQUIRE_GPU"), "TRUERAY_REQUIRE_GPU is set, but {error}");
+            // Past the test harness, which hides what passing tests print.
+            writeln!(std::io::stderr(), "{test}: skipped: no Vulkan device").unwrap();
+            None
+        }
+    }
+}
+
+/// Whether an environment variable is set to something but 0.
+pub(crate) fn is_set(variable: &str) -> bool {
+    std::env::var(variable).is_ok_and(|value| !value.is_empty() && value != "0")
+}
+
+/// The project's folder.
+pub(crate) fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// All scene files below `scenes/` of the named folders, sorted.
+pub(crate) fn scene_files(folders: &[&str]) -> Vec<PathBuf> {
+    let in_folder = |folder: &&str| {
+        let entries = std::fs::read_dir(root().join("scenes").join(folder)).unwrap();
+        entries.map(|entry| entry.unwrap().path()).collect::<Vec<_>>()
+    };
+    let mut files: Vec<_> = folders.iter().flat_map(in_folder).collect();
+    files.retain(|file| file.extension().is_some_and(|extension| extension == "txt"));
+    files.sort();
+    assert!(!files.is_empty());
+    files
+}
+
+/// Reads a scene without errors.
+pub(crate) fn scene(file: &Path) -> Scene {
+    let parsed = parse(&file.display().to_string(), &std::fs::read(file).unwrap());
+    parsed.scene.clone().unwrap_or_else(|| panic!("{}", parsed.report(false)))
+}
+
+/// A scene from its text, with a window and a small picture before it.
+pub(crate) fn scene_of(statements: &str) -> Scene {
+    let text = format!("NEAR 1\nLEFT -1\nRIGHT 1\nBOTTOM -1\nTOP 1\nRES 40 40\n{statements}");
+    let parsed = parse("test", text.as_bytes());
+    parsed.scene.clone().unwrap_or_else(|| panic!("{}", parsed.report(false)))
+}
+
+/// The GPU's picture and its number of pixels that are not finite.
+pub(crate) fn gpu_picture(gpu: &Gpu, scene: &Scene, settings: &Settings, effects: &Effects) -> (Picture, u64) {
+    let mut engine = Engine::new(Some(gpu), scene, settings, effects).unwrap();
+    let (rgb, not_finite) = render_picture(&mut engine, scene).unwrap();
+    (picture(scene, rgb), not_finite)
+}
+
+/// The CPU's picture in the scalar `T` and its number of pixels that are not finite.
+pub(crate) fn cpu_picture<T: Real>(scene: &Scene, settings: &Settings, effects: &Effects) -> (Picture, u64) {
+    let mut rgb = vec![0; scene.width as usize * scene.height as usize * 3];
+    let tally = Reference::<T>::new(scene, settings, effects).rows(0, &mut rgb);
+    (picture(scene, rgb), tally.not_finite)
+}
+
+fn picture(scene: &Scene, rgb: Vec<u8>) -> Picture {
+    Picture::new(scene.width, scene.height, rgb).unwrap()
+}
