@@ -46,7 +46,7 @@ pub struct Rays {
 #[derive(Debug)]
 pub enum Engine<'a> {
     /// The CPU reference.
-    Cpu(CpuEngine),
+    Cpu(Box<CpuEngine>),
     /// A Vulkan device.
     Gpu(Box<GpuRenderer<'a>>, Duration),
 }
@@ -72,12 +72,12 @@ impl<'a> Engine<'a> {
         Ok(match gpu {
             None => {
                 let reference = Reference::new(scene, settings, effects);
-                Self::Cpu(CpuEngine {
+                Self::Cpu(Box::new(CpuEngine {
                     reference,
                     prepare: start.elapsed(),
                     render: Duration::ZERO,
                     tally: Tally::default(),
-                })
+                }))
             }
             Some(gpu) => Self::Gpu(Box::new(GpuRenderer::new(gpu, scene, settings, effects)?), start.elapsed()),
         })
@@ -125,8 +125,9 @@ impl<'a> Engine<'a> {
     /// Rays so far; `None` where they were not counted.
     pub fn rays(&self) -> Option<Rays> {
         match self {
-            Self::Cpu(CpuEngine { tally: Tally { primary, shadow, reflection, .. }, .. }) => {
-                Some(Rays { primary: *primary, shadow: *shadow, reflection: *reflection })
+            Self::Cpu(cpu) => {
+                let Tally { primary, shadow, reflection, .. } = cpu.tally;
+                Some(Rays { primary, shadow, reflection })
             }
             Self::Gpu(gpu, _) => gpu.rays().map(|[primary, shadow, reflection]| Rays { primary, shadow, reflection }),
         }

@@ -173,19 +173,18 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Subje
     let scene = &loaded.scene;
     let settings = args.picture.settings();
     let effects = args.picture.effects(scene, &settings);
-    let (name, picture, not_finite) = match picture {
-        Some(path) => (path.display().to_string(), read(path, args.lenient)?, None),
-        None => {
-            // Comparing the reference with itself would say nothing: auto means a device here.
-            let choice = if args.device.device == Choice::Auto { &Choice::Gpu } else { &args.device.device };
-            if *choice == Choice::Cpu {
-                return Err(Failure::new(USAGE, "--device cpu would compare the reference with itself"));
-            }
-            let gpu = Gpu::open(choice)?;
-            let mut engine = Engine::new(Some(&gpu), scene, &settings, &effects)?;
-            let (rgb, not_finite) = render_picture(&mut engine, scene)?;
-            (device_name(Some(&gpu)), self::picture(scene, rgb)?, Some(not_finite))
+    let (name, picture, not_finite) = if let Some(path) = picture {
+        (path.display().to_string(), read(path, args.lenient)?, None)
+    } else {
+        // Comparing the reference with itself would say nothing: auto means a device here.
+        let choice = if args.device.device == Choice::Auto { &Choice::Gpu } else { &args.device.device };
+        if *choice == Choice::Cpu {
+            return Err(Failure::new(USAGE, "--device cpu would compare the reference with itself"));
         }
+        let gpu = Gpu::open(choice)?;
+        let mut engine = Engine::new(Some(&gpu), scene, &settings, &effects)?;
+        let (rgb, not_finite) = render_picture(&mut engine, scene)?;
+        (device_name(Some(&gpu)), self::picture(scene, rgb)?, Some(not_finite))
     };
     let (rgb, _) = render_picture(&mut Engine::new(None, scene, &settings, &effects)?, scene)?;
     let expected = self::picture(scene, rgb)?;

@@ -28,9 +28,9 @@ pub struct Truth {
 /// The moment form: |c'|²t² + 2(S'·c')t + |S'|² − 1 = 0 has the discriminant |c'|² − |S'×c'|² (Lagrange's identity), free of
 /// the cancellation in (S'·c')² − |c'|²(|S'|² − 1).
 pub fn truth(origin: DVec3, direction: DVec3, center: DVec3, scale: DVec3) -> Truth {
-    let inv_scale = reciprocal::<Dd>(scale);
-    let s = (Vec3::from_f64(origin) - Vec3::from_f64(center)) * inv_scale;
-    let c = Vec3::from_f64(direction) * inv_scale;
+    let radii = Vec3::from_f64(scale.abs());
+    let s = quotient(Vec3::from_f64(origin) - Vec3::from_f64(center), radii);
+    let c = quotient(Vec3::from_f64(direction), radii);
     let a = c.dot(c);
     let moment = cross(s, c);
     let discriminant = a - moment.dot(moment);
@@ -44,15 +44,14 @@ pub fn truth(origin: DVec3, direction: DVec3, center: DVec3, scale: DVec3) -> Tr
 /// ellipsoid to `f64` on the way into object space.
 pub fn intersect<T: Real>(origin: DVec3, direction: DVec3, center: DVec3, scale: DVec3) -> Option<(T, T)> {
     let ray = Ray { origin: Vec3::from_f64(origin), direction: Vec3::from_f64(direction) };
-    let shape =
-        Shape { center: Vec3::from_f64(center), inv_scale: reciprocal(scale), radius: T::ONE, index: Default::default() };
+    let inv_scale = quotient(Vec3::new(T::ONE, T::ONE, T::ONE), Vec3::from_f64(scale.abs()));
+    let shape = Shape { center: Vec3::from_f64(center), inv_scale, radius: T::ONE, index: 0 };
     roots(&approach(&ray, &shape), shape.radius)
 }
 
-/// 1/|scale|: into the space where the ellipsoid is the unit sphere.
-fn reciprocal<T: Real>(scale: DVec3) -> Vec3<T> {
-    let s = Vec3::from_f64(scale.abs());
-    Vec3::new(T::ONE / s.x, T::ONE / s.y, T::ONE / s.z)
+/// a/b, componentwise.
+fn quotient<T: Real>(a: Vec3<T>, b: Vec3<T>) -> Vec3<T> {
+    Vec3::new(a.x / b.x, a.y / b.y, a.z / b.z)
 }
 
 /// Vector product.

@@ -34,7 +34,7 @@ impl Specialisation {
             effects,
             skip_self: settings.secondary == Secondary::SkipSelf,
             blinn: settings.specular == Specular::Blinn,
-            few: few.then(|| [scene.spheres.len() as u32, scene.lights.len() as u32]),
+            few: few.then_some([scene.spheres.len() as u32, scene.lights.len() as u32]),
             count_rays: false,
         }
     }

@@ -243,13 +243,13 @@ impl Kernel {
         let pixels = Readable::new(gpu, values);
         let ray_counts = Readable::new(gpu, if specialisation.count_rays { values } else { 1 });
         // What loops read: few elements go into a uniform buffer of fixed size.
-        let looped = |contents: &[u8], few_size: usize| match specialisation.few {
-            None => filled(contents, storage),
-            Some(_) => {
-                let mut padded = vec![0; few_size];
-                padded[..contents.len()].copy_from_slice(contents);
-                filled(&padded, wgpu::BufferUsages::UNIFORM)
+        let looped = |contents: &[u8], few_size: usize| {
+            if specialisation.few.is_none() {
+                return filled(contents, storage);
             }
+            let mut padded = vec![0; few_size];
+            padded[..contents.len()].copy_from_slice(contents);
+            filled(&padded, wgpu::BufferUsages::UNIFORM)
         };
         let inputs = [
             looped(bytemuck::cast_slice(&packed.shapes), MAX_FEW * size_of::<Shape>()),

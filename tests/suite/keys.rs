@@ -1,6 +1,5 @@
 //! The assignment's official pictures, from the folder that `TRUERAY_KEYS` names.
 
-use std::io::Write as _;
 use std::path::PathBuf;
 
 use trueray::compare::{Difference, Explanation};
@@ -10,12 +9,12 @@ use trueray::film::{Leniency, Picture, read_picture};
 use trueray::scene::Scene;
 use trueray::settings::Settings;
 
-use crate::support::{cpu_picture, gpu, gpu_picture, scene};
+use crate::support::{cpu_picture, gpu, gpu_picture, say_skipped, scene};
 
 /// Scene and official picture of each key in the folder; `None`, said aloud, where no folder is named.
 fn keys(test: &str) -> Option<Vec<(String, Scene, Picture)>> {
     let Some(folder) = std::env::var_os("TRUERAY_KEYS") else {
-        writeln!(std::io::stderr(), "{test}: skipped: TRUERAY_KEYS names no folder of official pictures").unwrap();
+        say_skipped(test, "TRUERAY_KEYS names no folder of official pictures");
         return None;
     };
     let folder = PathBuf::from(folder);

@@ -48,7 +48,8 @@ fn every_constant_is_an_override_and_every_override_is_set() {
 #[test]
 fn structs_lie_in_memory_as_the_shader_reads_them() {
     let module = Module::render(false).parse().unwrap();
-    let structs: [(&str, &[(&str, usize)], usize); 4] = [
+    type Fields = &'static [(&'static str, usize)];
+    let structs: [(&str, Fields, usize); 4] = [
         ("Params", Params::FIELDS, size_of::<Params>()),
         ("Shape", Shape::FIELDS, size_of::<Shape>()),
         ("Material", Material::FIELDS, size_of::<Material>()),

@@ -19,11 +19,16 @@ pub(crate) fn gpu(test: &str) -> Option<MutexGuard<'static, Gpu>> {
         Ok(gpu) => Some(gpu.lock().unwrap_or_else(PoisonError::into_inner)),
         Err(error) => {
             assert!(!is_set("TRUERAY_REQUIRE_GPU"), "TRUERAY_REQUIRE_GPU is set, but {error}");
-            // Past the test harness, which hides what passing tests print.
-            writeln!(std::io::stderr(), "{test}: skipped: no Vulkan device").unwrap();
+            say_skipped(test, "no Vulkan device");
             None
         }
     }
+}
+
+/// Says that a test is skipped, past the test harness, which hides what passing tests print.
+#[allow(clippy::explicit_write, reason = "eprintln! is what the harness hides")]
+pub(crate) fn say_skipped(test: &str, why: &str) {
+    writeln!(std::io::stderr(), "{test}: skipped: {why}").unwrap();
 }
 
 /// Whether an environment variable is set to something but 0.
