@@ -45,10 +45,12 @@ fn every_constant_is_an_override_and_every_override_is_set() {
     }
 }
 
+/// Names and offsets of the fields of a struct.
+type Fields = &'static [(&'static str, usize)];
+
 #[test]
 fn structs_lie_in_memory_as_the_shader_reads_them() {
     let module = Module::render(false).parse().unwrap();
-    type Fields = &'static [(&'static str, usize)];
     let structs: [(&str, Fields, usize); 4] = [
         ("Params", Params::FIELDS, size_of::<Params>()),
         ("Shape", Shape::FIELDS, size_of::<Shape>()),

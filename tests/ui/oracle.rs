@@ -289,9 +289,9 @@ fn oracle_powers_of_a_highlight() {
     // cosⁿ as exp(n·log1p(−d)), for exponents up to 3000, against exact powers.
     let mut random = Random(6);
     at_most("highlight", 1e-28 / U2, 20, || {
-        let (n, d) = (1 + random.bits() as u32 % 3000, random.magnitude(-6.0, -2.0));
+        let (n, d) = ((1 + random.bits() % 3000) as i16, random.magnitude(-6.0, -2.0));
         let power = (Dd::from(f64::from(n)) * (-Dd::from(d)).log1p()).exp();
-        error(power, &(Relaxed::ONE - exact(d)).pow(n as isize))
+        error(power, &(Relaxed::ONE - exact(d)).pow(isize::from(n)))
     });
 }
 
