@@ -3,6 +3,9 @@
 
 @group(0) @binding(1) var<uniform> shapes: array<Shape, 16>;
 @group(0) @binding(3) var<uniform> lights: array<Light, 16>;
+// What rounding took from each of their numbers, for the tiers that carry it.
+@group(0) @binding(9) var<uniform> shapes_low: array<Shape, 16>;
+@group(0) @binding(10) var<uniform> lights_low: array<Light, 16>;
 
 override SPHERE_COUNT: u32;
 override LIGHT_COUNT: u32;

@@ -1,22 +1,4 @@
-// Rays against spheres; read it beside src/cpu/intersect.rs.
-//
-// The quadratic |c'|^2 t^2 + 2(S'.c')t + |S'|^2 - r^2 = 0 in its numerically sound form: the discriminant from the distance of
-// the ray to the centre, the roots as a stable pair (Haines, Gunther, Akenine-Moller, "Precision Improvements for Ray/Sphere
-// Intersection", Ray Tracing Gems, chapter 7).
-
-// origin + t direction; the direction need not be normalised.
-struct Ray {
-    origin: vec3r,
-    direction: vec3r,
-    // direction . direction, and one over it.
-    a: real,
-    inv_a: real,
-}
-
-fn ray_from(origin: vec3r, direction: vec3r) -> Ray {
-    let a = dot(direction, direction);
-    return Ray(origin, direction, a, 1.0 / a);
-}
+// The nearest hit and any hit, over the roots that the tier's kernel finds; read it beside src/cpu/intersect.rs.
 
 // The sphere that a secondary ray leaves.
 struct Own {
@@ -51,66 +33,18 @@ fn primary_range() -> Range {
     return Range(params.primary_t_min, FAR, SHELLS);
 }
 
-fn secondary_range() -> Range {
-    return Range(params.secondary_t_min, FAR, true);
-}
-
-// A ray's closest approach to a sphere's centre, in the sphere's object space.
-struct Approach {
-    // S': origin minus centre.
-    origin: vec3r,
-    // c'.
-    direction: vec3r,
-    // c'.c'.
-    a: real,
-    // -S'.c'.
-    b: real,
-    // From the centre to the closest point of the line.
-    perpendicular: vec3r,
-    // radius^2 - |perpendicular|^2: negative where the line misses.
-    discriminant: real,
-}
-
-fn approach(ray: Ray, shape: Shape) -> Approach {
-    var origin = ray.origin - shape.center;
-    var direction = ray.direction;
-    var a = ray.a;
-    var inv_a = ray.inv_a;
-    if ELLIPSOIDS {
-        origin *= shape.inv_scale;
-        direction *= shape.inv_scale;
-        a = dot(direction, direction);
-        inv_a = 1.0 / a;
-    }
-    let b = -dot(origin, direction);
-    // An error of b/a moves the point along the ray, which changes its distance to second order only.
-    let perpendicular = origin + direction * (b * inv_a);
-    let discriminant = shape.radius * shape.radius - dot(perpendicular, perpendicular);
-    return Approach(origin, direction, a, b, perpendicular, discriminant);
-}
-
-// Both roots, lesser first. Only where the discriminant is not negative.
-fn roots(at: Approach, radius: real) -> vec2<real> {
-    let root = sqrt(at.a * at.discriminant);
-    let c = dot(at.origin, at.origin) - radius * radius;
-    if at.b >= 0.0 {
-        let q = at.b + root;
-        return vec2<real>(c / q, q / at.a);
-    }
-    let q = at.b - root;
-    return vec2<real>(q / at.a, c / q);
+fn reflection_range() -> Range {
+    return Range(params.reflection_t_min, FAR, true);
 }
 
 // Where a ray that starts on the inner wall leaves its own sphere: C = 0, so t = -2B/A and no quadratic is needed.
-fn exit_root(own: Own, ray: Ray, shape: Shape) -> real {
-    var direction = ray.direction;
-    var a = ray.a;
+fn exit_root(own: Own, direction_in_world: vec3r, sphere: u32) -> real {
+    var direction = direction_in_world;
     if ELLIPSOIDS {
-        direction *= shape.inv_scale;
-        a = dot(direction, direction);
+        direction *= shapes[sphere].inv_scale;
     }
     let projection = -dot(own.local, direction);
-    return (projection + projection) / a;
+    return (projection + projection) / dot(direction, direction);
 }
 
 // The least root of one sphere that counts.
@@ -121,22 +55,18 @@ struct Root {
     inside: bool,
 }
 
-fn accepted_root(ray: Ray, shape: Shape, own: Own, range: Range) -> Root {
-    if SKIP_SELF && own.shape == shape.index {
+fn accepted_root(ray: Ray, sphere: u32, own: Own, range: Range) -> Root {
+    if SKIP_SELF && own.shape == shapes[sphere].index {
         // The outside of a convex surface is never met again.
-        let t = exit_root(own, ray, shape);
+        let t = exit_root(own, direction_of(ray), sphere);
         return Root(own.inside && t > range.t_min && t < range.t_max, t, true);
     }
-    let at = approach(ray, shape);
-    // Ordered comparison: a NaN is never a hit.
-    if !(at.discriminant >= 0.0) {
-        return Root(false, FAR, false);
+    let roots = roots(ray, sphere);
+    if roots.lesser > range.t_min {
+        return Root(roots.exist && roots.lesser < range.t_max, roots.lesser, false);
     }
-    let t = roots(at, shape.radius);
-    if t.x > range.t_min {
-        return Root(t.x < range.t_max, t.x, false);
-    }
-    return Root(range.greater && t.y > range.t_min && t.y < range.t_max, t.y, true);
+    let counts = roots.exist && range.greater && roots.greater > range.t_min && roots.greater < range.t_max;
+    return Root(counts, roots.greater, true);
 }
 
 // The nearest intersection in the range; of equal ones the lowest index.
@@ -144,7 +74,7 @@ fn nearest_hit(ray: Ray, own: Own, within: Range) -> Hit {
     var range = within;
     var nearest = Hit(false, FAR, 0u, false);
     for (var sphere = 0u; sphere < sphere_count(); sphere++) {
-        let root = accepted_root(ray, shapes[sphere], own, range);
+        let root = accepted_root(ray, sphere, own, range);
         if root.counts {
             nearest = Hit(true, root.t, sphere, root.inside);
             range.t_max = root.t;
@@ -153,27 +83,21 @@ fn nearest_hit(ray: Ray, own: Own, within: Range) -> Hit {
     return nearest;
 }
 
-// Whether a root that counts lies beyond t_min and before t = 1: from where both ends lie, without a square root.
-fn blocks(ray: Ray, shape: Shape, own: Own) -> bool {
-    let t_min = params.secondary_t_min;
-    if SKIP_SELF && own.shape == shape.index {
-        let t = exit_root(own, ray, shape);
-        return own.inside && t > t_min && t < 1.0;
+// Whether a root that counts lies beyond t_min and before t = 1.
+fn blocks(ray: Ray, sphere: u32, own: Own) -> bool {
+    let t_min = params.shadow_t_min;
+    if SKIP_SELF && own.shape == shapes[sphere].index {
+        let t = exit_root(own, direction_of(ray), sphere);
+        return own.inside && t > t_min && t < real(1.0);
     }
-    let at = approach(ray, shape);
-    let start = at.origin + at.direction * t_min;
-    let end = at.origin + at.direction;
-    let starts_outside = dot(start, start) > shape.radius * shape.radius;
-    let ends_outside = dot(end, end) > shape.radius * shape.radius;
-    let passes = starts_outside && ends_outside && at.b > at.a * t_min && at.b < at.a;
-    return at.discriminant >= 0.0 && (starts_outside != ends_outside || passes);
+    return root_between(ray, sphere, t_min);
 }
 
 // Whether any sphere stands between the ray's origin and t = 1.
 fn any_hit(ray: Ray, own: Own) -> bool {
     var blocked = false;
     for (var sphere = 0u; sphere < sphere_count(); sphere++) {
-        blocked |= blocks(ray, shapes[sphere], own);
+        blocked |= blocks(ray, sphere, own);
         if MANY && blocked {
             break;
         }

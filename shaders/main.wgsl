@@ -4,12 +4,8 @@
 const STATUS_FINITE: u32 = 0u;
 const STATUS_NOT_FINITE: u32 = 1u;
 
-fn primary_ray(pixel: vec2<u32>) -> Ray {
-    return ray_from(vec3r(), vec3r(columns[pixel.x], rows[pixel.y], -params.near));
-}
-
 fn packed_pixel(color: vec3r) -> u32 {
-    let level = vec3<u32>(255.0 * clamp(color, vec3r(), vec3r(1.0)) + params.quantize_bias);
+    let level = vec3<u32>(real(255.0) * clamp(color, vec3r(), vec3r(real(1.0))) + params.quantize_bias);
     let finite = is_finite(color.x) && is_finite(color.y) && is_finite(color.z);
     let status = select(STATUS_NOT_FINITE, STATUS_FINITE, finite);
     return level.x | (level.y << 8u) | (level.z << 16u) | (status << 24u);
@@ -21,7 +17,7 @@ fn render_tiles(
     @builtin(local_invocation_id) local: vec3<u32>,
     @builtin(local_invocation_index) index: u32,
 ) {
-    let pixel = tiles[params.first_tile + group.x] + local.xy;
+    let pixel = tiles[group.x] + local.xy;
     pixels[group.x * 64u + index] = packed_pixel(trace(primary_ray(pixel)));
     if COUNT_RAYS {
         ray_counts[group.x * 64u + index] = min(shadow_rays, 0xffffu) | (min(reflection_rays, 0xffffu) << 16u);

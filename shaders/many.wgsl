@@ -2,6 +2,9 @@
 
 @group(0) @binding(1) var<storage, read> shapes: array<Shape>;
 @group(0) @binding(3) var<storage, read> lights: array<Light>;
+// What rounding took from each of their numbers, for the tiers that carry it.
+@group(0) @binding(9) var<storage, read> shapes_low: array<Shape>;
+@group(0) @binding(10) var<storage, read> lights_low: array<Light>;
 
 // Whether leaving a loop over the spheres early pays.
 const MANY: bool = true;

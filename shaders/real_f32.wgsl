@@ -18,3 +18,7 @@ fn log1m(d: real) -> real {
     }
     return log(1.0 - d);
 }
+
+fn exponential(x: real) -> real {
+    return exp(x);
+}

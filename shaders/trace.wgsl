@@ -6,10 +6,12 @@ fn reflection_ray(surface: Surface) -> Ray {
     return ray_from(surface.position, surface.normal * (n_dot_v + n_dot_v) - surface.view);
 }
 
+// Not the index of any shape: a primary ray leaves no sphere.
+const NO_SHAPE: u32 = 0xffffffffu;
+
 // The unclamped colour seen along the ray.
 fn trace(primary: Ray) -> vec3r {
-    // No shape has this index: a primary ray leaves no sphere.
-    var own = Own(0xffffffffu, false, vec3r());
+    var own = Own(NO_SHAPE, false, vec3r());
     var ray = primary;
     var hit = nearest_hit(ray, own, primary_range());
     if !hit.found {
@@ -20,7 +22,7 @@ fn trace(primary: Ray) -> vec3r {
         let surface = surface_at(ray, hit);
         return local_color(surface);
     }
-    var throughput: real = 1.0;
+    var throughput = real(1.0);
     var depth = 0u;
     // A reflection ray that hits nothing adds black.
     while hit.found {
@@ -28,7 +30,7 @@ fn trace(primary: Ray) -> vec3r {
         color += local_color(surface) * throughput;
 
         let kr = materials[surface.sphere].kr;
-        if depth == params.max_depth || kr == 0.0 {
+        if depth == params.max_depth || kr == real(0.0) {
             break;
         }
         depth += 1u;
@@ -38,7 +40,7 @@ fn trace(primary: Ray) -> vec3r {
         if COUNT_RAYS {
             reflection_rays++;
         }
-        hit = nearest_hit(ray, own, secondary_range());
+        hit = nearest_hit(ray, own, reflection_range());
     }
     return color;
 }

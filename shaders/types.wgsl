@@ -7,15 +7,19 @@ struct Params {
     ambient: vec3r,
     // A primary ray's hit counts beyond this.
     primary_t_min: real,
-    // A shadow or reflection ray's hit counts beyond this.
-    secondary_t_min: real,
+    // A blocker counts beyond this part of the way to the light.
+    shadow_t_min: real,
+    // A reflection ray's hit counts beyond this.
+    reflection_t_min: real,
     // Added to 255 c before the fraction is cut off.
     quantize_bias: real,
-    // Place of this dispatch's first tile in the list.
-    first_tile: u32,
+    // What rounding took from near.
+    near_low: real,
     sphere_count: u32,
     light_count: u32,
     max_depth: u32,
+    // 0, which no compiler knows: see barrier() in eft.wgsl.
+    zero: u32,
 }
 
 // What the intersection reads of a sphere.
@@ -46,8 +50,8 @@ struct Light {
     intensity: vec3r,
 }
 
+// Bindings 1 and 3, and their low parts 9 and 10, are in many.wgsl or few.wgsl: shapes and lights.
 @group(0) @binding(0) var<uniform> params: Params;
-// Bindings 1 and 3, shapes and lights, are in many.wgsl or few.wgsl.
 @group(0) @binding(2) var<storage, read> materials: array<Material>;
 // x of each column and y of each row on the image plane.
 @group(0) @binding(4) var<storage, read> columns: array<real>;
@@ -58,6 +62,9 @@ struct Light {
 @group(0) @binding(7) var<storage, read_write> pixels: array<u32>;
 // With COUNT_RAYS, the shadow rays (low half) and reflection rays (high half) of each of those pixels.
 @group(0) @binding(8) var<storage, read_write> ray_counts: array<u32>;
+// What rounding took from columns and rows, for the tiers that carry it.
+@group(0) @binding(11) var<storage, read> columns_low: array<real>;
+@group(0) @binding(12) var<storage, read> rows_low: array<real>;
 
 var<private> shadow_rays: u32;
 var<private> reflection_rays: u32;

@@ -343,7 +343,7 @@ impl<'a> Needs<'a> {
     fn clear_of_itself(&self, receiver: &Sphere, light: &Light) -> bool {
         let distance = (light.position - receiver.center).length() - radius(receiver);
         match self.settings.secondary {
-            Secondary::Epsilon(epsilon) => rounding(receiver) < epsilon * distance,
+            Secondary::Epsilon { shadow, .. } => rounding(receiver) < shadow * distance,
             Secondary::SkipSelf => true,
         }
     }
@@ -373,8 +373,8 @@ impl<'a> Needs<'a> {
     fn far_from_others(&self, index: usize) -> bool {
         let own = &self.scene.spheres[index];
         let epsilon = match self.settings.secondary {
-            Secondary::Epsilon(epsilon) if rounding(own) < epsilon => epsilon,
-            Secondary::Epsilon(_) => return false,
+            Secondary::Epsilon { reflection, .. } if rounding(own) < reflection => reflection,
+            Secondary::Epsilon { .. } => return false,
             Secondary::SkipSelf => 0.0,
         };
         self.scene.spheres.iter().enumerate().filter(|&(other, _)| other != index).all(|(_, other)| {

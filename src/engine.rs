@@ -7,6 +7,7 @@ use serde::Serialize;
 use crate::cpu::{Reference, Tally};
 use crate::effects::Effects;
 use crate::gpu::{self, Gpu, GpuRenderer};
+use crate::precision::Tier;
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::tiles::TILE;
@@ -42,6 +43,15 @@ pub struct Rays {
     pub reflection: u64,
 }
 
+/// What renders.
+#[derive(Debug, Clone, Copy)]
+pub enum Backend<'a> {
+    /// The CPU reference.
+    Reference,
+    /// A Vulkan device with the kernel of a tier.
+    Device(&'a Gpu, Tier),
+}
+
 /// A renderer with a scene.
 #[derive(Debug)]
 pub enum Engine<'a> {
@@ -61,16 +71,16 @@ pub struct CpuEngine {
 }
 
 impl<'a> Engine<'a> {
-    /// Prepares `scene` for `gpu`, or for the CPU reference where that is `None`.
+    /// Prepares `scene` for `backend`.
     pub fn new(
-        gpu: Option<&'a Gpu>,
+        backend: Backend<'a>,
         scene: &Scene,
         settings: &Settings,
         effects: &Effects,
     ) -> Result<Self, gpu::Error> {
         let start = Instant::now();
-        Ok(match gpu {
-            None => {
+        Ok(match backend {
+            Backend::Reference => {
                 let reference = Reference::new(scene, settings, effects);
                 Self::Cpu(Box::new(CpuEngine {
                     reference,
@@ -79,7 +89,9 @@ impl<'a> Engine<'a> {
                     tally: Tally::default(),
                 }))
             }
-            Some(gpu) => Self::Gpu(Box::new(GpuRenderer::new(gpu, scene, settings, effects)?), start.elapsed()),
+            Backend::Device(gpu, tier) => {
+                Self::Gpu(Box::new(GpuRenderer::new(gpu, scene, settings, effects, tier)?), start.elapsed())
+            }
         })
     }
 

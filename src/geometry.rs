@@ -4,9 +4,12 @@
 //! `inv_scale` and the ellipsoid becomes a sphere of `radius` in [1, 2) around the origin. `inv_scale` is a power of two
 //! times the ratio of the greatest semi-axis to each axis, so for a true sphere the way into object space is exact.
 
+use std::borrow::Cow;
+
 use glam::DVec3;
 
-use crate::scene::{Scene, Sphere};
+use crate::scene::{Scene, Sphere, Window};
+use crate::settings::{Secondary, Settings};
 
 /// An axis-aligned ellipsoid prepared for intersection.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,6 +60,39 @@ pub fn ellipsoids(scene: &Scene, true_axes: bool) -> Vec<Ellipsoid> {
         Ellipsoid::new(if true_axes { sphere } else { &bounding })
     };
     scene.spheres.iter().map(prepare).collect()
+}
+
+/// Worlds whose greatest coordinate lies within this range keep their squares within the range of `f32` as they are.
+const COMMON_EXTENT: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
+
+/// The scene in units in which squared lengths neither overflow nor underflow in `f32`: multiplied by a power of two, which
+/// changes no digit, no root and no pixel. Distances in the settings follow.
+pub fn in_range<'a>(scene: &'a Scene, settings: &Settings) -> (Cow<'a, Scene>, Settings) {
+    let extent = |v: DVec3| v.abs().max_element();
+    let spheres = scene.spheres.iter().map(|s| extent(s.center).max(extent(s.scale)));
+    let lights = scene.lights.iter().map(|light| extent(light.position));
+    let Window { near, left, right, bottom, top } = scene.window;
+    let window = [near, left.abs(), right.abs(), bottom.abs(), top.abs()];
+    let greatest = spheres.chain(lights).chain(window).fold(0.0, f64::max);
+    if COMMON_EXTENT.contains(&greatest) {
+        return (Cow::Borrowed(scene), *settings);
+    }
+    let k = reciprocal_power_of_two(greatest);
+    let mut scene = scene.clone();
+    let [near, left, right, bottom, top] = [near, left, right, bottom, top].map(|x| x * k);
+    scene.window = Window { near, left, right, bottom, top };
+    for sphere in &mut scene.spheres {
+        sphere.center *= k;
+        sphere.scale *= k;
+    }
+    for light in &mut scene.lights {
+        light.position *= k;
+    }
+    let mut settings = *settings;
+    if let Secondary::Epsilon { reflection, .. } = &mut settings.secondary {
+        *reflection *= k;
+    }
+    (Cow::Owned(scene), settings)
 }
 
 /// For each sphere the lowest index of a sphere with the bit-identical surface: rays that leave one leave them all.

@@ -14,6 +14,7 @@ pub mod engine;
 pub mod film;
 pub mod geometry;
 pub mod gpu;
+pub mod precision;
 pub mod scene;
 pub mod settings;
 pub mod study;

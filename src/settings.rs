@@ -55,8 +55,13 @@ impl Quantize {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Secondary {
-    /// Every sphere counts from t > epsilon on, the own one included.
-    Epsilon(f64),
+    /// Every sphere counts, the own one included, from a least distance on.
+    Epsilon {
+        /// Part of the way to the light beyond which a blocker counts, in 0..1.
+        shadow: f64,
+        /// Distance beyond which a reflection ray's hit counts, in world units.
+        reflection: f64,
+    },
     /// The own sphere counts by its analytic other root, every other one from t > 0 on.
     SkipSelf,
 }
@@ -95,7 +100,7 @@ impl Settings {
         Self {
             sampling: Sampling::Corner,
             quantize: Quantize::Truncate,
-            secondary: Secondary::Epsilon(1e-3),
+            secondary: Secondary::Epsilon { shadow: 1e-3, reflection: 1e-3 },
             specular: Specular::Phong,
             max_depth: 3,
         }
@@ -108,6 +113,24 @@ impl Settings {
             quantize: Quantize::Round,
             secondary: Secondary::SkipSelf,
             ..Self::classic()
+        }
+    }
+}
+
+impl Secondary {
+    /// The least t of a shadow ray, in parts of the way to the light.
+    pub fn shadow_t_min(self) -> f64 {
+        match self {
+            Self::Epsilon { shadow, .. } => shadow,
+            Self::SkipSelf => 0.0,
+        }
+    }
+
+    /// The least t of a reflection ray, in world units.
+    pub fn reflection_t_min(self) -> f64 {
+        match self {
+            Self::Epsilon { reflection, .. } => reflection,
+            Self::SkipSelf => 0.0,
         }
     }
 }

@@ -9,9 +9,10 @@ use super::input::Loaded;
 use super::options::{DeviceOptions, PictureOptions, device_name};
 use crate::compare::{Difference, Explanation, Limits, Verdict, heatmap, three_wide, verdict};
 use crate::cpu::{Judge, Reference};
-use crate::engine::{Engine, render_picture};
+use crate::engine::{Backend, Engine, render_picture};
 use crate::film::{Format, Leniency, Picture, Target, read_picture};
 use crate::gpu::{Choice, Gpu};
+use crate::precision::Selection;
 
 /// Arguments of `trueray compare`.
 #[derive(Debug, clap::Args)]
@@ -173,6 +174,7 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Subje
     let scene = &loaded.scene;
     let settings = args.picture.settings();
     let effects = args.picture.effects(scene, &settings);
+    let selection = Selection::of(scene, &effects, args.device.precision);
     let (name, picture, not_finite) = if let Some(path) = picture {
         (path.display().to_string(), read(path, args.lenient)?, None)
     } else {
@@ -182,11 +184,11 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Subje
             return Err(Failure::new(USAGE, "--device cpu would compare the reference with itself"));
         }
         let gpu = Gpu::open(choice)?;
-        let mut engine = Engine::new(Some(&gpu), scene, &settings, &effects)?;
+        let mut engine = Engine::new(Backend::Device(&gpu, selection.tier), scene, &settings, &effects)?;
         let (rgb, not_finite) = render_picture(&mut engine, scene)?;
-        (device_name(Some(&gpu)), self::picture(scene, rgb)?, Some(not_finite))
+        (format!("{}, {}", device_name(Some(&gpu)), selection.tier), self::picture(scene, rgb)?, Some(not_finite))
     };
-    let (rgb, _) = render_picture(&mut Engine::new(None, scene, &settings, &effects)?, scene)?;
+    let (rgb, _) = render_picture(&mut Engine::new(Backend::Reference, scene, &settings, &effects)?, scene)?;
     let expected = self::picture(scene, rgb)?;
     if (picture.width(), picture.height()) != (expected.width(), expected.height()) {
         let (width, height) = (picture.width(), picture.height());
@@ -194,7 +196,7 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Subje
         return Err(Failure::new(USAGE, message));
     }
     let reference = Reference::new(scene, &settings, &effects);
-    let explanation = Explanation::of(&picture, &expected, &reference, &Judge::SINGLE);
+    let explanation = Explanation::of(&picture, &expected, &reference, &Judge::of(selection.tier));
     let names = [name, format!("reference of {}", loaded.name)];
     Ok(Subject { names, pictures: [picture, expected], explanation: Some(explanation), not_finite })
 }

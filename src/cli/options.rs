@@ -4,6 +4,7 @@ use clap::{Args, ValueEnum};
 
 use crate::effects::{Effects, Request};
 use crate::gpu::{Choice, Error, Gpu};
+use crate::precision;
 use crate::scene::Scene;
 use crate::settings::{Quantize, Sampling, Secondary, Settings, Specular};
 
@@ -87,6 +88,9 @@ pub(super) struct DeviceOptions {
     /// auto, cpu, gpu (never falls back), an index of `trueray devices`, part of a device's name or driver, or its PCI id
     #[arg(long, value_name = "DEVICE", default_value = "auto")]
     pub device: Choice,
+    /// Tier of the kernel: fast, robust, double, or auto for the lowest that covers the scene
+    #[arg(long, value_name = "TIER", default_value = "auto")]
+    pub precision: precision::Request,
 }
 
 impl DeviceOptions {
@@ -142,7 +146,7 @@ fn secondary(text: &str) -> Result<Secondary, String> {
         return Ok(Secondary::SkipSelf);
     }
     match text.parse::<f64>() {
-        Ok(epsilon) if (0.0..1.0).contains(&epsilon) => Ok(Secondary::Epsilon(epsilon)),
+        Ok(epsilon) if (0.0..1.0).contains(&epsilon) => Ok(Secondary::Epsilon { shadow: epsilon, reflection: epsilon }),
         _ => Err("expected a number from 0 to below 1, or `skip-self`".into()),
     }
 }

@@ -10,9 +10,10 @@ use super::options::{DeviceOptions, PictureOptions, device_name};
 use super::progress::{Progress, Style};
 use super::stats::Stats;
 use crate::effects::Effects;
-use crate::engine::{Engine, render_bands};
+use crate::engine::{Backend, Engine, render_bands};
 use crate::film::{Format, PictureWriter, Target};
 use crate::gpu::Gpu;
+use crate::precision::Selection;
 use crate::settings::Settings;
 
 /// Arguments of `trueray render`.
@@ -106,11 +107,13 @@ fn render_one(args: &Args, mut loaded: Loaded, gpu: Option<&Gpu>, open_time: Dur
     let (target, format) = target(args, &loaded)?;
     let settings = args.picture.settings();
     let effects = args.picture.effects(scene, &settings);
+    let selection = Selection::of(scene, &effects, args.device.precision);
     if args.explain || args.verbose {
-        eprint!("{}", explanation(&loaded.name, &effects));
+        eprint!("{}{}", explanation(&loaded.name, &effects), precision_explanation(&selection));
     }
+    let backend = gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, selection.tier));
 
-    let mut engine = Engine::new(gpu, scene, &settings, &effects)?;
+    let mut engine = Engine::new(backend, scene, &settings, &effects)?;
     let wants_stats = args.stats || args.stats_json.is_some();
     if wants_stats {
         engine.count_rays();
@@ -172,6 +175,12 @@ pub(super) fn explanation(name: &str, effects: &Effects) -> String {
     };
     let rows: String = effects.rows.iter().map(row).collect();
     format!("{name}: effects (reflection depth {})\n{rows}", effects.depth)
+}
+
+/// What the scene demands and which tier that takes.
+pub(super) fn precision_explanation(selection: &Selection) -> String {
+    let Selection { tier, reason, demand, .. } = selection;
+    format!("  precision    {tier}: {reason}\n  demand       {}\n", demand.summary())
 }
 
 #[allow(clippy::too_many_arguments, reason = "gathers what is known in one place")]

@@ -7,6 +7,8 @@ use serde::Serialize;
 use super::failure::{Failure, OK, OUTPUT};
 use super::input::Loaded;
 use super::options::{DeviceOptions, PictureOptions, device_name};
+use crate::engine::Backend;
+use crate::precision::Selection;
 use crate::study::{EffectCost, effect_cost};
 
 /// Arguments of `trueray study`.
@@ -52,7 +54,10 @@ fn study(args: &Args) -> Result<(), Failure> {
         args.picture.resize(&mut loaded.scene);
         let scene = &loaded.scene;
         let settings = args.picture.settings();
-        let effect_cost = effect_cost(gpu.as_ref(), scene, &settings, args.runs as usize)?;
+        let effects = args.picture.effects(scene, &settings);
+        let selection = Selection::of(scene, &effects, args.device.precision);
+        let backend = gpu.as_ref().map_or(Backend::Reference, |gpu| Backend::Device(gpu, selection.tier));
+        let effect_cost = effect_cost(backend, scene, &settings, args.runs as usize)?;
         let report = Report {
             scene: loaded.name,
             width: scene.width,

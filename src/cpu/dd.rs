@@ -179,7 +179,7 @@ impl Real for Dd {
         Self::renormalized(root, remainder / (2.0 * root))
     }
 
-    /// Relative error below 1e-30 (5e-32 measured) where the result is greater than 1e-270.
+    /// Relative error below 1e-30 (1e-31 measured) where the result is greater than 1e-270.
     fn exp(self) -> Self {
         // Beyond ±746 the result is 0 or infinite, and a NaN passes through.
         if !(self.hi.abs() < 746.0) {
@@ -190,7 +190,7 @@ impl Real for Dd {
         (rest.exp_m1() + Self::ONE).times_power_of_two(k as i32)
     }
 
-    /// Relative error below 1e-30 (5e-32 measured) where 1 + x lies between 1e-270 and 1e308.
+    /// Relative error below 1e-30 (1e-31 measured) where 1 + x lies between 1e-270 and 1e308.
     ///
     /// One step from the logarithm y in `f64`: ln w = y + ln(1 + δ) with δ = w·e⁻ʸ − 1 of about 1e-16.
     fn log1p(self) -> Self {

@@ -153,5 +153,5 @@ pub(crate) fn blocks<T: Real>(ray: &Ray<T>, shape: &Shape<T>, own: Option<&Own<T
 
 /// Whether any sphere stands between the ray's origin and t = 1.
 pub(crate) fn any_hit<T: Real>(world: &World<T>, ray: &Ray<T>, own: Option<&Own<T>>) -> bool {
-    world.shapes.iter().any(|shape| blocks(ray, shape, own, world.secondary.t_min))
+    world.shapes.iter().any(|shape| blocks(ray, shape, own, world.shadow_t_min))
 }

@@ -1,6 +1,6 @@
 //! How near a pixel's decisions are to falling the other way, to first order.
 //!
-//! A renderer with unit roundoff u follows a ray that lies within a thin cone around the exact one. The cone's width is
+//! A renderer that rounds follows a ray that lies within a thin cone around the exact one. The cone's width is
 //! carried along the path (position error, direction error, growing at grazing angles and on curved mirrors); at every
 //! decision the reference asks whether the cone contains the other answer, and in the end which levels the colour can take.
 
@@ -14,6 +14,7 @@ use super::shade::Surface;
 use super::trace::trace;
 use super::vec3::Vec3;
 use super::witness::Witness;
+use crate::precision::Tier;
 
 /// Rounding errors that a value gathers before it is compared, in units of u: the longest chain of operations between the
 /// inputs and a decision (ray into object space, closest approach, discriminant) has about this many steps.
@@ -54,24 +55,33 @@ impl Decision {
     }
 }
 
-/// Judges the pixels of a renderer whose scalar has a given unit roundoff.
+/// Judges the pixels of a renderer by the precision of its arithmetic.
 #[derive(Debug, Clone, Copy)]
 pub struct Judge {
-    unit_roundoff: f64,
+    /// Unit roundoff of shading, and of points on a sphere relative to its size.
+    shading: f64,
+    /// Unit roundoff of inputs, places in the world and intersections.
+    geometry: f64,
 }
 
 impl Judge {
-    /// For a renderer in `f32`: u = 2⁻²³.
-    pub const SINGLE: Self = Self { unit_roundoff: 1.0 / (1u64 << 23) as f64 };
-    /// For a renderer in `f64`: u = 2⁻⁵².
-    pub const DOUBLE: Self = Self { unit_roundoff: 1.0 / (1u64 << 52) as f64 };
+    /// For the kernel of `tier`.
+    pub fn of(tier: Tier) -> Self {
+        // `robust` intersects with pairs of f32 that carry at least 44 bits.
+        let (shading, geometry) = match tier {
+            Tier::Fast => (23, 23),
+            Tier::Robust => (23, 44),
+            Tier::Double => (52, 52),
+        };
+        Self { shading: 0.5_f64.powi(shading), geometry: 0.5_f64.powi(geometry) }
+    }
 
     /// The decision that explains `level`, another renderer's 8-bit value of pixel (column `i`, row `j`) that differs from
     /// the reference's: the first on the pixel's path that comes within its margin. `None`: the pixel is unexplained.
     pub fn explain(&self, reference: &Reference<f64>, i: u32, j: u32, level: [u8; 3]) -> Option<Decision> {
-        let mut cone = Cone::new(self.unit_roundoff);
+        let mut cone = Cone::new(self);
         let color = trace(&reference.world, reference.primary_ray(i, j), &mut cone).to_f64();
-        let error = cone.color + color.abs() * (STEPS * self.unit_roundoff);
+        let error = cone.color + color.abs() * (STEPS * self.shading);
         let low = reference.quantize.levels(color - error);
         let high = reference.quantize.levels(color + error);
         let within_step = (0..3).all(|c| (low[c]..=high[c]).contains(&level[c]));
@@ -82,7 +92,12 @@ impl Judge {
 /// The error cone around a traced ray; all errors are absolute, to first order.
 #[derive(Debug)]
 struct Cone {
+    /// Unit roundoff of shading.
     u: f64,
+    /// Unit roundoff of geometry.
+    g: f64,
+    /// The sphere that the ray leaves.
+    own: Option<usize>,
     /// Error of the ray's origin, in world units.
     position: f64,
     /// Error of the ray's direction, as a fraction of its length.
@@ -100,11 +115,13 @@ struct Cone {
 }
 
 impl Cone {
-    fn new(u: f64) -> Self {
+    fn new(judge: &Judge) -> Self {
         Self {
-            u,
+            u: judge.shading,
+            g: judge.geometry,
+            own: None,
             position: 0.0,
-            direction: u,
+            direction: judge.geometry,
             normal: 0.0,
             color: DVec3::ZERO,
             throughput: 1.0,
@@ -120,8 +137,11 @@ impl Cone {
 
     /// Width of the cone at `t`, in world units, with the rounding of the way into object space.
     fn width(&self, world: &World<f64>, ray: &Ray<f64>, sphere: usize, t: f64) -> f64 {
-        let magnitude = length(ray.origin) + length(world.shapes[sphere].center) + t.abs() * length(ray.direction);
-        self.position + t.abs() * length(ray.direction) * self.direction + STEPS * self.u * magnitude
+        let along = t.abs() * length(ray.direction);
+        let magnitude = length(ray.origin) + length(world.shapes[sphere].center) + along;
+        // The start of a ray may be off along its own surface, but lies on it but for rounding.
+        let start = if self.own == Some(sphere) { STEPS * self.u * size(world, sphere) } else { self.position };
+        start + along * self.direction + STEPS * self.g * magnitude
     }
 
     /// Error of a root t: the width of the cone, stretched by the angle at which the ray meets the surface.
@@ -151,7 +171,8 @@ impl Cone {
         [touch, at_min, at_end]: [Decision; 3],
     ) {
         for (sphere, shape) in world.shapes.iter().enumerate() {
-            let is_hit = hit.is_some_and(|hit| hit.sphere == sphere);
+            // Of equal surfaces the lowest index wins on every device.
+            let is_hit = hit.is_some_and(|hit| world.shapes[hit.sphere].is_same_surface(shape));
             if let Some(own) = own.filter(|own| own.shape == shape.index) {
                 let t = exit_root(own, ray.direction, shape);
                 if own.inside
@@ -203,17 +224,18 @@ impl Witness<f64> for Cone {
         let shape = &world.shapes[hit.sphere];
         let at = approach(ray, shape);
         self.position = self.root_error(world, ray, hit.sphere, &at, hit.t) * length(ray.direction)
-            + STEPS * self.u * length(surface.position);
+            + STEPS * (self.g * length(surface.position) + self.u * size(world, hit.sphere));
+        self.own = Some(hit.sphere);
         // The greatest curvature of an ellipsoid is its longest semi-axis over the square of its shortest.
         let shortest = shape.radius / largest(shape.inv_scale);
-        let longest = largest(world.materials[hit.sphere].scale) * shape.radius;
+        let longest = size(world, hit.sphere);
         self.normal = self.position * longest / (shortest * shortest) + STEPS * self.u;
     }
 
     fn lit(&mut self, _world: &World<f64>, surface: &Surface<f64>, light: &PointLight<f64>, n_dot_l: f64) {
         let distance = length(light.position - surface.position);
         let error = self.normal
-            + (self.position + self.u * length(light.position)) / distance.max(f64::MIN_POSITIVE)
+            + (self.position + self.g * length(light.position)) / distance.max(f64::MIN_POSITIVE)
             + STEPS * self.u;
         self.light = (n_dot_l, error);
         if n_dot_l.abs() <= error {
@@ -225,7 +247,7 @@ impl Witness<f64> for Cone {
         let shadow = [Decision::ShadowEdge; 3];
         let direction = self.direction;
         self.direction = self.light.1;
-        self.watch_roots(world, ray, own, (world.secondary.t_min, 1.0), None, shadow);
+        self.watch_roots(world, ray, own, (world.shadow_t_min, 1.0), None, shadow);
         self.direction = direction;
     }
 
@@ -248,9 +270,14 @@ impl Witness<f64> for Cone {
 
     fn reflected(&mut self, throughput: f64) {
         self.throughput = throughput;
-        self.direction += 2.0 * self.normal;
+        self.direction += 2.0 * self.normal + STEPS * self.u;
         self.bounces += 1;
     }
+}
+
+/// Greatest semi-axis of a sphere.
+fn size(world: &World<f64>, sphere: usize) -> f64 {
+    largest(world.materials[sphere].scale) * world.shapes[sphere].radius
 }
 
 fn length(v: Vec3<f64>) -> f64 {

@@ -1,7 +1,9 @@
 //! The CPU reference: the specification in `f64`, written to be read beside the shaders.
 
+mod dd;
 mod intersect;
 mod margin;
+pub mod oracle;
 mod real;
 mod render;
 mod scene;
@@ -10,6 +12,7 @@ mod trace;
 mod vec3;
 mod witness;
 
+pub use dd::Dd;
 pub use margin::{Decision, Judge};
 pub use real::Real;
 pub use render::{Reference, Tally};

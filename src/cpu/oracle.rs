@@ -17,7 +17,7 @@ pub struct Truth {
     /// Both roots in units of the direction, lesser first, equal where the line touches; none where it misses.
     ///
     /// Their relative error is about 1e-32, times 1/√clearance near a tangent, times the radius over the root where the
-    /// origin lies near the surface: 1e-25 at a clearance of 1e-12 and at 1e-7 radii from the surface.
+    /// origin lies near the surface: some 1e-25 at a clearance of 1e-12 or at 1e-7 radii from the surface.
     pub roots: Option<[Dd; 2]>,
     /// 1 − l², with l the distance of the line from the centre in the space where the ellipsoid is the unit sphere:
     /// 1 through the centre, 0 at a tangent, negative for a miss, NaN without direction or semi-axis.

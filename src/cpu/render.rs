@@ -11,6 +11,7 @@ use super::vec3::Vec3;
 use super::witness::Witness;
 use crate::camera::Camera;
 use crate::effects::Effects;
+use crate::geometry::in_range;
 use crate::scene::Scene;
 use crate::settings::{Quantize, Settings};
 
@@ -25,9 +26,10 @@ pub struct Reference<T> {
 impl<T: Real> Reference<T> {
     /// Prepares `scene` with `effects`, rounding its numbers once to `T`.
     pub fn new(scene: &Scene, settings: &Settings, effects: &Effects) -> Self {
+        let (scene, settings) = in_range(scene, settings);
         Self {
-            world: World::new(scene, settings, effects),
-            camera: Camera::new(scene, settings.sampling),
+            world: World::new(&scene, &settings, effects),
+            camera: Camera::new(&scene, settings.sampling),
             quantize: settings.quantize,
         }
     }

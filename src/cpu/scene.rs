@@ -22,6 +22,13 @@ pub(crate) struct Shape<T> {
     pub index: u32,
 }
 
+impl<T: Real> Shape<T> {
+    /// Whether both are bit for bit the same surface.
+    pub(crate) fn is_same_surface(&self, other: &Self) -> bool {
+        (self.center, self.inv_scale, self.radius) == (other.center, other.inv_scale, other.radius)
+    }
+}
+
 /// One sphere: what only shading reads.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Material<T> {
@@ -52,8 +59,10 @@ pub(crate) struct World<T> {
     pub background: Vec3<T>,
     /// The roots that count along a primary ray.
     pub primary: Range<T>,
-    /// The roots that count along a shadow or reflection ray.
-    pub secondary: Range<T>,
+    /// A blocker counts beyond this part of the way to the light.
+    pub shadow_t_min: T,
+    /// The roots that count along a reflection ray.
+    pub reflection: Range<T>,
     /// Whether the own sphere counts by its analytic other root only.
     pub skip_self: bool,
     pub shadows: bool,
@@ -67,17 +76,13 @@ impl<T: Real> World<T> {
         let ellipsoids = ellipsoids(scene, on(Effect::Ellipsoids));
         let indices = match settings.secondary {
             Secondary::SkipSelf => shape_indices(&ellipsoids),
-            Secondary::Epsilon(_) => Vec::new(),
+            Secondary::Epsilon { .. } => Vec::new(),
         };
         let shape = |(i, e): (usize, &Ellipsoid)| Shape {
             center: Vec3::from_f64(e.center),
             inv_scale: Vec3::from_f64(e.inv_scale),
             radius: T::from_f64(e.radius),
             index: indices.get(i).copied().unwrap_or(i as u32),
-        };
-        let secondary_t_min = match settings.secondary {
-            Secondary::Epsilon(epsilon) => epsilon,
-            Secondary::SkipSelf => 0.0,
         };
         let range = |t_min, greater| Range { t_min: T::from_f64(t_min), t_max: T::FAR, greater };
         Self {
@@ -87,7 +92,8 @@ impl<T: Real> World<T> {
             ambient: Vec3::from_f64(scene.ambient),
             background: Vec3::from_f64(scene.background),
             primary: if on(Effect::Shells) { range(NEAR_T_MIN, true) } else { range(0.0, false) },
-            secondary: range(secondary_t_min, true),
+            shadow_t_min: T::from_f64(settings.secondary.shadow_t_min()),
+            reflection: range(settings.secondary.reflection_t_min(), true),
             skip_self: settings.secondary == Secondary::SkipSelf,
             shadows: on(Effect::Shadows),
             specular: settings.specular,

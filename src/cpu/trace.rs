@@ -32,9 +32,9 @@ pub(crate) fn trace<T: Real, W: Witness<T>>(world: &World<T>, primary: Ray<T>, w
         throughput *= kr;
         ray = reflection_ray(&surface);
         let own = world.skip_self.then_some(&surface.own);
-        hit = nearest_hit(world, &ray, own, world.secondary);
+        hit = nearest_hit(world, &ray, own, world.reflection);
         witness.reflected(throughput);
-        witness.nearest(world, &ray, own, &world.secondary, hit.as_ref());
+        witness.nearest(world, &ray, own, &world.reflection, hit.as_ref());
     }
     color
 }

@@ -3,7 +3,10 @@
 //! Three locks hold them together: the assertions below, a test against naga's reflection of the shader, and a test that
 //! reads values back from the device.
 
-use bytemuck::{Pod, Zeroable};
+use bytemuck::Pod;
+use glam::DVec3;
+
+use crate::scene;
 
 /// Declares a struct as the shader lays it out, with the offsets of its fields.
 macro_rules! shader_struct {
@@ -22,87 +25,237 @@ macro_rules! shader_struct {
     };
 }
 
-shader_struct! {
-    /// Parameters of one dispatch.
-    Params {
-        /// Colour of a primary ray that hits nothing.
-        background: [f32; 3],
-        /// Distance of the image plane.
-        near: f32,
-        /// Ambient intensity.
-        ambient: [f32; 3],
-        /// A primary ray's hit counts beyond this.
-        primary_t_min: f32,
-        /// A shadow or reflection ray's hit counts beyond this.
-        secondary_t_min: f32,
-        /// Added to 255·c before the fraction is cut off.
-        quantize_bias: f32,
-        /// Place of this dispatch's first tile in the list.
-        first_tile: u32,
-        /// Number of spheres.
-        sphere_count: u32,
-        /// Number of lights.
-        light_count: u32,
-        /// Greatest number of reflection bounces.
-        max_depth: u32,
-        /// To the size that WGSL gives the struct.
-        padding: [u32; 2],
-    }
+/// The parameters before they are rounded.
+#[derive(Debug, Clone, Copy)]
+#[allow(missing_docs, reason = "the fields are those of Params")]
+pub struct ParamValues {
+    pub background: DVec3,
+    pub near: f64,
+    pub ambient: DVec3,
+    pub primary_t_min: f64,
+    pub shadow_t_min: f64,
+    pub reflection_t_min: f64,
+    pub quantize_bias: f64,
+    pub sphere_count: u32,
+    pub light_count: u32,
+    pub max_depth: u32,
 }
 
-shader_struct! {
-    /// What the intersection reads of a sphere.
-    Shape {
-        /// Centre in world space.
-        center: [f32; 3],
-        /// Radius in object space.
-        radius: f32,
-        /// World to object space.
-        inv_scale: [f32; 3],
-        /// Lowest index of a sphere with this very surface.
-        index: u32,
-    }
+/// A shape before it is rounded.
+#[derive(Debug, Clone, Copy)]
+#[allow(missing_docs, reason = "the fields are those of Shape")]
+pub struct ShapeValues {
+    pub center: DVec3,
+    pub radius: f64,
+    pub inv_scale: DVec3,
+    pub index: u32,
 }
 
-shader_struct! {
-    /// What only shading reads of a sphere.
-    Material {
-        /// Object colour.
-        color: [f32; 3],
-        /// Ambient coefficient.
-        ka: f32,
-        /// Object to world space.
-        scale: [f32; 3],
-        /// Diffuse coefficient.
-        kd: f32,
-        /// Specular coefficient.
-        ks: f32,
-        /// Reflection coefficient.
-        kr: f32,
-        /// Specular exponent.
-        n: f32,
-        /// To the size that WGSL gives the struct.
-        padding: u32,
-    }
+/// The structs of one scalar and how they are filled.
+#[allow(missing_docs, reason = "one item for each struct")]
+pub trait Layout {
+    type Params: Pod;
+    type Shape: Pod;
+    type Material: Pod;
+    type Light: Pod;
+    /// The scalar.
+    type Real: Pod;
+    /// The nearest scalar.
+    fn real(x: f64) -> Self::Real;
+    /// What rounding to the scalar takes from `x`.
+    fn residual(x: f64) -> f64;
+    fn params(values: &ParamValues) -> Self::Params;
+    fn shape(values: &ShapeValues) -> Self::Shape;
+    fn material(sphere: &scene::Sphere, scale: DVec3) -> Self::Material;
+    fn light(light: &scene::Light) -> Self::Light;
 }
 
-shader_struct! {
-    /// One point light.
-    Light {
-        /// Position in world space.
-        position: [f32; 3],
-        /// To the alignment that WGSL gives the next vector.
-        padding0: u32,
-        /// Intensity.
-        intensity: [f32; 3],
-        /// To the size that WGSL gives the struct.
-        padding1: u32,
-    }
+/// Declares the structs for one scalar, with the numbers of `u32` that pad each.
+macro_rules! layout {
+    ($(#[$doc:meta])* $module:ident, $real:ty, params $params:literal, shape $shape:literal, material $material:literal, light $light:literal) => {
+        $(#[$doc])*
+        pub mod $module {
+            use bytemuck::{Pod, Zeroable};
+            use glam::DVec3;
+
+            use super::{ParamValues, ShapeValues};
+            use crate::scene;
+
+            shader_struct! {
+                /// Parameters of one dispatch.
+                Params {
+                    /// Colour of a primary ray that hits nothing.
+                    background: [$real; 3],
+                    /// Distance of the image plane.
+                    near: $real,
+                    /// Ambient intensity.
+                    ambient: [$real; 3],
+                    /// A primary ray's hit counts beyond this.
+                    primary_t_min: $real,
+                    /// A blocker counts beyond this part of the way to the light.
+                    shadow_t_min: $real,
+                    /// A reflection ray's hit counts beyond this.
+                    reflection_t_min: $real,
+                    /// Added to 255·c before the fraction is cut off.
+                    quantize_bias: $real,
+                    /// What rounding took from `near`.
+                    near_low: $real,
+                    /// Number of spheres.
+                    sphere_count: u32,
+                    /// Number of lights.
+                    light_count: u32,
+                    /// Greatest number of reflection bounces.
+                    max_depth: u32,
+                    /// 0, which no compiler knows.
+                    zero: u32,
+                    /// To the size that WGSL gives the struct.
+                    padding: [u32; $params],
+                }
+            }
+
+            shader_struct! {
+                /// What the intersection reads of a sphere.
+                Shape {
+                    /// Centre in world space.
+                    center: [$real; 3],
+                    /// Radius in object space.
+                    radius: $real,
+                    /// World to object space.
+                    inv_scale: [$real; 3],
+                    /// Lowest index of a sphere with this very surface.
+                    index: u32,
+                    /// To the size that WGSL gives the struct.
+                    padding: [u32; $shape],
+                }
+            }
+
+            shader_struct! {
+                /// What only shading reads of a sphere.
+                Material {
+                    /// Object colour.
+                    color: [$real; 3],
+                    /// Ambient coefficient.
+                    ka: $real,
+                    /// Object to world space.
+                    scale: [$real; 3],
+                    /// Diffuse coefficient.
+                    kd: $real,
+                    /// Specular coefficient.
+                    ks: $real,
+                    /// Reflection coefficient.
+                    kr: $real,
+                    /// Specular exponent.
+                    n: $real,
+                    /// To the size that WGSL gives the struct.
+                    padding: [u32; $material],
+                }
+            }
+
+            shader_struct! {
+                /// One point light.
+                Light {
+                    /// Position in world space.
+                    position: [$real; 3],
+                    /// To the alignment that WGSL gives the next vector.
+                    padding0: [u32; $light],
+                    /// Intensity.
+                    intensity: [$real; 3],
+                    /// To the size that WGSL gives the struct.
+                    padding1: [u32; $light],
+                }
+            }
+
+            /// Packs into these structs; every number is rounded once, to the nearest.
+            #[derive(Debug, Clone, Copy)]
+            pub struct Layout;
+
+            impl super::Layout for Layout {
+                type Params = Params;
+                type Shape = Shape;
+                type Material = Material;
+                type Light = Light;
+                type Real = $real;
+
+                fn real(x: f64) -> $real {
+                    x as $real
+                }
+
+                fn residual(x: f64) -> f64 {
+                    x - f64::from(x as $real)
+                }
+
+                fn params(values: &ParamValues) -> Params {
+                    Params {
+                        background: vector(values.background),
+                        near: Self::real(values.near),
+                        ambient: vector(values.ambient),
+                        primary_t_min: Self::real(values.primary_t_min),
+                        shadow_t_min: Self::real(values.shadow_t_min),
+                        reflection_t_min: Self::real(values.reflection_t_min),
+                        quantize_bias: Self::real(values.quantize_bias),
+                        near_low: Self::real(Self::residual(values.near)),
+                        sphere_count: values.sphere_count,
+                        light_count: values.light_count,
+                        max_depth: values.max_depth,
+                        ..Params::zeroed()
+                    }
+                }
+
+                fn shape(values: &ShapeValues) -> Shape {
+                    Shape {
+                        center: vector(values.center),
+                        radius: Self::real(values.radius),
+                        inv_scale: vector(values.inv_scale),
+                        index: values.index,
+                        ..Shape::zeroed()
+                    }
+                }
+
+                fn material(sphere: &scene::Sphere, scale: DVec3) -> Material {
+                    Material {
+                        color: vector(sphere.color),
+                        ka: Self::real(sphere.ka),
+                        scale: vector(scale),
+                        kd: Self::real(sphere.kd),
+                        ks: Self::real(sphere.ks),
+                        kr: Self::real(sphere.kr),
+                        n: Self::real(sphere.n),
+                        ..Material::zeroed()
+                    }
+                }
+
+                fn light(light: &scene::Light) -> Light {
+                    Light {
+                        position: vector(light.position),
+                        intensity: vector(light.intensity),
+                        ..Light::zeroed()
+                    }
+                }
+            }
+
+            fn vector(v: DVec3) -> [$real; 3] {
+                v.to_array().map(|x| x as $real)
+            }
+        }
+    };
 }
+
+layout!(
+    /// The structs of the `f32` kernels.
+    single, f32, params 0, shape 0, material 1, light 1
+);
+layout!(
+    /// The structs of the `f64` kernels.
+    double, f64, params 4, shape 1, material 2, light 2
+);
 
 const _: () = {
-    assert!(size_of::<Params>() == 64 && std::mem::offset_of!(Params, first_tile) == 40);
-    assert!(size_of::<Shape>() == 32 && std::mem::offset_of!(Shape, inv_scale) == 16);
-    assert!(size_of::<Material>() == 48 && std::mem::offset_of!(Material, ks) == 32);
-    assert!(size_of::<Light>() == 32 && std::mem::offset_of!(Light, intensity) == 16);
+    assert!(size_of::<single::Params>() == 64 && std::mem::offset_of!(single::Params, sphere_count) == 48);
+    assert!(size_of::<single::Shape>() == 32 && std::mem::offset_of!(single::Shape, inv_scale) == 16);
+    assert!(size_of::<single::Material>() == 48 && std::mem::offset_of!(single::Material, ks) == 32);
+    assert!(size_of::<single::Light>() == 32 && std::mem::offset_of!(single::Light, intensity) == 16);
+    assert!(size_of::<double::Params>() == 128 && std::mem::offset_of!(double::Params, sphere_count) == 96);
+    assert!(size_of::<double::Shape>() == 64 && std::mem::offset_of!(double::Shape, inv_scale) == 32);
+    assert!(size_of::<double::Material>() == 96 && std::mem::offset_of!(double::Material, ks) == 64);
+    assert!(size_of::<double::Light>() == 64 && std::mem::offset_of!(double::Light, intensity) == 32);
 };

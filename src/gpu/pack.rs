@@ -1,99 +1,128 @@
-//! From the scene to the bytes of the buffers; every number is rounded once, to the nearest `f32`.
+//! From the scene to the bytes of the buffers.
 
+use bytemuck::Pod;
 use glam::DVec3;
 
-use super::layout::{Light, Material, Params, Shape};
+use super::layout::{Layout, ParamValues, ShapeValues, double, single};
 use crate::camera::{Camera, NEAR_T_MIN};
 use crate::effects::{Effect, Effects};
-use crate::geometry::{ellipsoids, shape_indices};
-use crate::scene::Scene;
-use crate::settings::{Secondary, Settings};
+use crate::geometry::{Ellipsoid, ellipsoids, shape_indices};
+use crate::precision::Tier;
+use crate::scene::{Light, Scene};
+use crate::settings::Settings;
 use crate::tiles::TILE;
 
-/// The contents of the buffers that do not change from dispatch to dispatch.
-#[derive(Debug)]
+/// The contents of the buffers, and the size of one element of those that loops read.
+#[derive(Debug, Default)]
 pub(super) struct Packed {
-    /// Parameters, `first_tile` still 0.
-    pub params: Params,
+    pub(super) params: Vec<u8>,
     /// One per sphere.
-    pub shapes: Vec<Shape>,
+    pub(super) shapes: Vec<u8>,
     /// One per sphere.
-    pub materials: Vec<Material>,
+    pub(super) materials: Vec<u8>,
     /// One per light.
-    pub lights: Vec<Light>,
+    pub(super) lights: Vec<u8>,
     /// x of each column on the image plane, on to the end of the last tile.
-    pub columns: Vec<f32>,
+    pub(super) columns: Vec<u8>,
     /// y of each row on the image plane, on to the end of the last tile.
-    pub rows: Vec<f32>,
+    pub(super) rows: Vec<u8>,
+    /// What rounding took, for the tier that carries it.
+    pub(super) low: Option<Low>,
+    pub(super) shape_size: usize,
+    pub(super) light_size: usize,
+}
+
+/// What rounding took from each number, in the same layout.
+#[derive(Debug, Default)]
+pub(super) struct Low {
+    pub(super) shapes: Vec<u8>,
+    pub(super) lights: Vec<u8>,
+    pub(super) columns: Vec<u8>,
+    pub(super) rows: Vec<u8>,
 }
 
 impl Packed {
-    /// Packs `scene` for a pipeline that simulates `effects`.
-    pub(super) fn new(scene: &Scene, settings: &Settings, effects: &Effects) -> Self {
-        let on = |effect| effects.set.has(effect);
-        let camera = Camera::new(scene, settings.sampling);
-        let ellipsoids = ellipsoids(scene, on(Effect::Ellipsoids));
-        let indices = shape_indices(&ellipsoids);
-
-        let mut shapes = Vec::with_capacity(scene.spheres.len());
-        let mut materials = Vec::with_capacity(scene.spheres.len());
-        for ((sphere, ellipsoid), index) in scene.spheres.iter().zip(&ellipsoids).zip(indices) {
-            // Without the effect the kernel leaves out the way into object space: what is exact there, a power of two,
-            // goes into the radius.
-            let (inv_scale, scale, radius) = if on(Effect::Ellipsoids) {
-                (ellipsoid.inv_scale, ellipsoid.scale, ellipsoid.radius)
-            } else {
-                (DVec3::ONE, DVec3::ONE, ellipsoid.radius * ellipsoid.scale.x)
-            };
-            shapes.push(Shape {
-                center: single(ellipsoid.center),
-                radius: radius as f32,
-                inv_scale: single(inv_scale),
-                index,
-            });
-            materials.push(Material {
-                color: single(sphere.color),
-                ka: sphere.ka as f32,
-                scale: single(scale),
-                kd: sphere.kd as f32,
-                ks: sphere.ks as f32,
-                kr: sphere.kr as f32,
-                n: sphere.n as f32,
-                padding: 0,
-            });
-        }
-        let light = |light: &crate::scene::Light| Light {
-            position: single(light.position),
-            padding0: 0,
-            intensity: single(light.intensity),
-            padding1: 0,
-        };
-        Self {
-            params: Params {
-                background: single(scene.background),
-                near: camera.near() as f32,
-                ambient: single(scene.ambient),
-                primary_t_min: if on(Effect::Shells) { NEAR_T_MIN as f32 } else { 0.0 },
-                secondary_t_min: match settings.secondary {
-                    Secondary::Epsilon(epsilon) => epsilon as f32,
-                    Secondary::SkipSelf => 0.0,
-                },
-                quantize_bias: settings.quantize.bias() as f32,
-                first_tile: 0,
-                sphere_count: scene.spheres.len() as u32,
-                light_count: scene.lights.len() as u32,
-                max_depth: effects.depth,
-                padding: [0; 2],
-            },
-            shapes,
-            materials,
-            lights: scene.lights.iter().map(light).collect(),
-            columns: (0..scene.width.next_multiple_of(TILE)).map(|i| camera.x(i) as f32).collect(),
-            rows: (0..scene.height.next_multiple_of(TILE)).map(|j| camera.y(j) as f32).collect(),
+    /// Packs `scene` for a pipeline that simulates `effects` at `tier`.
+    pub(super) fn new(scene: &Scene, settings: &Settings, effects: &Effects, tier: Tier) -> Self {
+        match tier {
+            Tier::Fast => pack::<single::Layout>(scene, settings, effects, false),
+            Tier::Robust => pack::<single::Layout>(scene, settings, effects, true),
+            Tier::Double => pack::<double::Layout>(scene, settings, effects, false),
         }
     }
 }
 
-fn single(v: DVec3) -> [f32; 3] {
-    v.as_vec3().to_array()
+fn pack<L: Layout>(scene: &Scene, settings: &Settings, effects: &Effects, with_low: bool) -> Packed {
+    let on = |effect| effects.set.has(effect);
+    let camera = Camera::new(scene, settings.sampling);
+    let ellipsoids = ellipsoids(scene, on(Effect::Ellipsoids));
+    let shapes = shape_values(&ellipsoids, on(Effect::Ellipsoids));
+    let columns: Vec<f64> = (0..scene.width.next_multiple_of(TILE)).map(|i| camera.x(i)).collect();
+    let rows: Vec<f64> = (0..scene.height.next_multiple_of(TILE)).map(|j| camera.y(j)).collect();
+
+    let params = ParamValues {
+        background: scene.background,
+        near: camera.near(),
+        ambient: scene.ambient,
+        primary_t_min: if on(Effect::Shells) { NEAR_T_MIN } else { 0.0 },
+        shadow_t_min: settings.secondary.shadow_t_min(),
+        reflection_t_min: settings.secondary.reflection_t_min(),
+        quantize_bias: settings.quantize.bias(),
+        sphere_count: scene.spheres.len() as u32,
+        light_count: scene.lights.len() as u32,
+        max_depth: effects.depth,
+    };
+    // Without the effect the kernel leaves out the way into object space.
+    let scale = |ellipsoid: &Ellipsoid| if on(Effect::Ellipsoids) { ellipsoid.scale } else { DVec3::ONE };
+    let reals = |values: &[f64]| bytes(values.iter().map(|&x| L::real(x)));
+    let low = || {
+        let residual = |v: DVec3| DVec3::from_array(v.to_array().map(L::residual));
+        let shape = |s: &ShapeValues| ShapeValues {
+            center: residual(s.center),
+            radius: L::residual(s.radius),
+            inv_scale: residual(s.inv_scale),
+            index: s.index,
+        };
+        let light = |light: &Light| Light { position: residual(light.position), ..*light };
+        let residuals = |values: &[f64]| values.iter().map(|&x| L::residual(x)).collect::<Vec<_>>();
+        Low {
+            shapes: bytes(shapes.iter().map(|s| L::shape(&shape(s)))),
+            lights: bytes(scene.lights.iter().map(|l| L::light(&light(l)))),
+            columns: reals(&residuals(&columns)),
+            rows: reals(&residuals(&rows)),
+        }
+    };
+    Packed {
+        params: bytes([L::params(&params)]),
+        shapes: bytes(shapes.iter().map(L::shape)),
+        materials: bytes(scene.spheres.iter().zip(&ellipsoids).map(|(s, e)| L::material(s, scale(e)))),
+        lights: bytes(scene.lights.iter().map(L::light)),
+        columns: reals(&columns),
+        rows: reals(&rows),
+        low: with_low.then(low),
+        shape_size: size_of::<L::Shape>(),
+        light_size: size_of::<L::Light>(),
+    }
+}
+
+/// What the intersection reads of each sphere; without the way into object space, what is exact there, a power of two, goes
+/// into the radius.
+fn shape_values(ellipsoids: &[Ellipsoid], object_space: bool) -> Vec<ShapeValues> {
+    let value = |(ellipsoid, index): (&Ellipsoid, u32)| {
+        let (inv_scale, radius) = if object_space {
+            (ellipsoid.inv_scale, ellipsoid.radius)
+        } else {
+            (DVec3::ONE, ellipsoid.radius * ellipsoid.scale.x)
+        };
+        ShapeValues { center: ellipsoid.center, radius, inv_scale, index }
+    };
+    ellipsoids.iter().zip(shape_indices(ellipsoids)).map(value).collect()
+}
+
+fn bytes<T: Pod>(values: impl IntoIterator<Item = T>) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    for value in values {
+        bytes.extend_from_slice(bytemuck::bytes_of(&value));
+    }
+    bytes
 }

@@ -7,12 +7,13 @@ use wgpu::util::DeviceExt;
 
 use super::device::Gpu;
 use super::error::Error;
-use super::layout::{Light, Params, Shape};
 use super::pack::Packed;
 use super::pipeline::{MAX_FEW, Specialisation, compile};
 use super::readable::Readable;
 use crate::camera::Camera;
 use crate::effects::{Effect, Effects};
+use crate::geometry::in_range;
+use crate::precision::Tier;
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::tiles::{Cover, TILE};
@@ -49,8 +50,9 @@ pub struct GpuRenderer<'a> {
     gpu: &'a Gpu,
     cover: Cover,
     width: u32,
+    /// Number of tiles of the whole picture; no band has more.
+    picture_tiles: u64,
     background: [u8; 3],
-    params: Params,
     kernel: Option<Kernel>,
     kernel_inputs: Inputs,
     tiles_per_dispatch: u32,
@@ -71,7 +73,6 @@ struct Inputs {
 struct Kernel {
     pipeline: wgpu::ComputePipeline,
     bind_group: wgpu::BindGroup,
-    params: wgpu::Buffer,
     tiles: wgpu::Buffer,
     pixels: Readable,
     ray_counts: Readable,
@@ -81,8 +82,10 @@ struct Kernel {
 
 impl<'a> GpuRenderer<'a> {
     /// Prepares `scene` for `gpu`; the kernel is compiled when the first tile needs it.
-    pub fn new(gpu: &'a Gpu, scene: &Scene, settings: &Settings, effects: &Effects) -> Result<Self, Error> {
-        let packed = Packed::new(scene, settings, effects);
+    pub fn new(gpu: &'a Gpu, scene: &Scene, settings: &Settings, effects: &Effects, tier: Tier) -> Result<Self, Error> {
+        let (scene, settings) = in_range(scene, settings);
+        let (scene, settings) = (scene.as_ref(), &settings);
+        let packed = Packed::new(scene, settings, effects, tier);
         check_fits(gpu, &packed)?;
         let camera = Camera::new(scene, settings.sampling);
         let tests_per_pixel = (scene.spheres.len() as u64 + 1)
@@ -93,10 +96,10 @@ impl<'a> GpuRenderer<'a> {
             gpu,
             cover: Cover::new(scene, &camera, effects.set.has(Effect::Ellipsoids)),
             width: scene.width,
+            picture_tiles: u64::from(scene.width.div_ceil(TILE)) * u64::from(scene.height.div_ceil(TILE)),
             background: settings.quantize.levels(scene.background),
-            params: packed.params,
             kernel: None,
-            kernel_inputs: Inputs { packed, specialisation: Specialisation::new(scene, settings, effects.set) },
+            kernel_inputs: Inputs { packed, specialisation: Specialisation::new(scene, settings, effects.set, tier) },
             tiles_per_dispatch: first.clamp(1, u64::from(MAX_DISPATCH_TILES)) as u32,
             times: DeviceTimes::default(),
             rays: [0; 2],
@@ -153,9 +156,7 @@ impl<'a> GpuRenderer<'a> {
         let gpu = self.gpu;
         let Inputs { packed, specialisation } = &self.kernel_inputs;
         let pipeline = compile(gpu, specialisation)?;
-        // No band has more tiles than the picture.
-        let picture = (packed.columns.len() as u64 / u64::from(TILE)) * (packed.rows.len() as u64 / u64::from(TILE));
-        let capacity = picture.min(u64::from(MAX_DISPATCH_TILES.min(gpu.info.max_workgroups))) as u32;
+        let capacity = self.picture_tiles.min(u64::from(MAX_DISPATCH_TILES.min(gpu.info.max_workgroups))) as u32;
         let kernel =
             gpu.checked("reserving buffers", || Kernel::new(gpu, pipeline, packed, capacity, specialisation))?;
         self.submit(&kernel, &[[0, 0]])?;
@@ -176,7 +177,6 @@ impl<'a> GpuRenderer<'a> {
 
     /// Runs the kernel over `tiles` and waits for it.
     fn submit(&self, kernel: &Kernel, tiles: &[[u32; 2]]) -> Result<(), Error> {
-        self.gpu.queue.write_buffer(&kernel.params, 0, bytemuck::bytes_of(&self.params));
         self.gpu.queue.write_buffer(&kernel.tiles, 0, bytemuck::cast_slice(tiles));
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {
@@ -236,52 +236,56 @@ impl Kernel {
             device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
         };
         let storage = wgpu::BufferUsages::STORAGE;
-        let params =
-            filled(bytemuck::bytes_of(&packed.params), wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST);
+        // What loops read: few elements go into a uniform buffer of fixed size.
+        let looped = |contents: &[u8], element_size: usize| {
+            if specialisation.few.is_none() {
+                return filled(contents, storage);
+            }
+            let mut padded = vec![0; MAX_FEW * element_size];
+            padded[..contents.len()].copy_from_slice(contents);
+            filled(&padded, wgpu::BufferUsages::UNIFORM)
+        };
         let tiles = empty(u64::from(capacity) * 8, storage | wgpu::BufferUsages::COPY_DST);
         let values = u64::from(capacity) * TILE_PIXELS as u64;
         let pixels = Readable::new(gpu, values);
         let ray_counts = Readable::new(gpu, if specialisation.count_rays { values } else { 1 });
-        // What loops read: few elements go into a uniform buffer of fixed size.
-        let looped = |contents: &[u8], few_size: usize| {
-            if specialisation.few.is_none() {
-                return filled(contents, storage);
-            }
-            let mut padded = vec![0; few_size];
-            padded[..contents.len()].copy_from_slice(contents);
-            filled(&padded, wgpu::BufferUsages::UNIFORM)
-        };
-        let inputs = [
-            looped(bytemuck::cast_slice(&packed.shapes), MAX_FEW * size_of::<Shape>()),
-            filled(bytemuck::cast_slice(&packed.materials), storage),
-            looped(bytemuck::cast_slice(&packed.lights), MAX_FEW * size_of::<Light>()),
-            filled(bytemuck::cast_slice(&packed.columns), storage),
-            filled(bytemuck::cast_slice(&packed.rows), storage),
+        let mut inputs = vec![
+            (0, filled(&packed.params, wgpu::BufferUsages::UNIFORM)),
+            (1, looped(&packed.shapes, packed.shape_size)),
+            (2, filled(&packed.materials, storage)),
+            (3, looped(&packed.lights, packed.light_size)),
+            (4, filled(&packed.columns, storage)),
+            (5, filled(&packed.rows, storage)),
         ];
-        let buffers = [&params].into_iter().chain(&inputs).chain([&tiles, &pixels.buffer, &ray_counts.buffer]);
+        if let Some(low) = &packed.low {
+            inputs.extend([
+                (9, looped(&low.shapes, packed.shape_size)),
+                (10, looped(&low.lights, packed.light_size)),
+                (11, filled(&low.columns, storage)),
+                (12, filled(&low.rows, storage)),
+            ]);
+        }
+        let own = [(6, &tiles), (7, &pixels.buffer), (8, &ray_counts.buffer)];
+        let buffers = inputs.iter().map(|(binding, buffer)| (*binding, buffer)).chain(own);
         let entries: Vec<_> = buffers
-            .enumerate()
-            .map(|(binding, buffer)| wgpu::BindGroupEntry {
-                binding: binding as u32,
-                resource: buffer.as_entire_binding(),
-            })
+            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
             .collect();
         let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,
             layout: &pipeline.get_bind_group_layout(0),
             entries: &entries,
         });
-        Self { pipeline, bind_group, params, tiles, pixels, ray_counts, capacity }
+        Self { pipeline, bind_group, tiles, pixels, ray_counts, capacity }
     }
 }
 
 /// Refuses a scene whose buffers are larger than the device's bindings.
 fn check_fits(gpu: &Gpu, packed: &Packed) -> Result<(), Error> {
     let sizes = [
-        ("spheres", size_of_val(&packed.materials[..]).max(size_of_val(&packed.shapes[..]))),
-        ("lights", size_of_val(&packed.lights[..])),
-        ("columns", size_of_val(&packed.columns[..])),
-        ("rows", size_of_val(&packed.rows[..])),
+        ("spheres", packed.materials.len().max(packed.shapes.len())),
+        ("lights", packed.lights.len()),
+        ("columns", packed.columns.len()),
+        ("rows", packed.rows.len()),
     ];
     let limit = gpu.info.max_storage_binding.min(gpu.info.max_buffer);
     match sizes.iter().find(|(_, size)| *size as u64 > limit) {

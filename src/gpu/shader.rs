@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use crate::precision::Tier;
+
 /// One file of `shaders/`.
 #[derive(Debug, Clone, Copy)]
 struct Part {
@@ -17,18 +19,20 @@ macro_rules! part {
     };
 }
 
-/// The parts of the render module, in order.
-fn render_parts(few: bool) -> Vec<Part> {
-    vec![
+/// The parts that intersect rays with spheres, in order.
+fn intersection_parts(tier: Tier, few: bool) -> Vec<Part> {
+    let mut parts = vec![
         part!("effects.wgsl"),
-        part!("real_f32.wgsl"),
+        if tier == Tier::Double { part!("real_f64.wgsl") } else { part!("real_f32.wgsl") },
         part!("types.wgsl"),
         if few { part!("few.wgsl") } else { part!("many.wgsl") },
-        part!("intersect.wgsl"),
-        part!("shade.wgsl"),
-        part!("trace.wgsl"),
-        part!("main.wgsl"),
-    ]
+    ];
+    match tier {
+        Tier::Fast | Tier::Double => parts.push(part!("kernel_plain.wgsl")),
+        Tier::Robust => parts.extend([part!("eft.wgsl"), part!("kernel_robust.wgsl")]),
+    }
+    parts.push(part!("intersect.wgsl"));
+    parts
 }
 
 /// A composed module.
@@ -40,9 +44,11 @@ pub struct Module {
 }
 
 impl Module {
-    /// The module that renders tiles, for few spheres and lights or for any number.
-    pub fn render(few: bool) -> Self {
-        Self::join(render_parts(few))
+    /// The module that renders tiles at `tier`, for few spheres and lights or for any number.
+    pub fn render(tier: Tier, few: bool) -> Self {
+        let mut parts = intersection_parts(tier, few);
+        parts.extend([part!("shade.wgsl"), part!("trace.wgsl"), part!("main.wgsl")]);
+        Self::join(parts)
     }
 
     fn join(parts: Vec<Part>) -> Self {

@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use super::sample::Sample;
 use crate::effects::{Effect, EffectSet, Effects, Request};
-use crate::engine::{Engine, render_bands};
-use crate::gpu::{self, Gpu};
+use crate::engine::{Backend, Engine, render_bands};
+use crate::gpu;
 use crate::scene::Scene;
 use crate::settings::Settings;
 
@@ -37,7 +37,7 @@ pub struct EffectCost {
 
 /// Renders `scene` `runs` times in each variant, the variants in turn, after one warm-up of each.
 pub fn effect_cost(
-    gpu: Option<&Gpu>,
+    backend: Backend,
     scene: &Scene,
     settings: &Settings,
     runs: usize,
@@ -54,7 +54,7 @@ pub fn effect_cost(
     let mut pictures = Vec::new();
     for (name, request) in requests {
         let effects = Effects::requested(scene, settings, &request);
-        let mut engine = Engine::new(gpu, scene, settings, &effects)?;
+        let mut engine = Engine::new(backend, scene, settings, &effects)?;
         pictures.push(picture_hash(&mut engine, size)?);
         let compile_ms = engine.times().compile_ms;
         let same_picture = pictures.last() == pictures.first();

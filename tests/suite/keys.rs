@@ -6,6 +6,7 @@ use trueray::compare::{Difference, Explanation};
 use trueray::cpu::{Judge, Reference};
 use trueray::effects::Effects;
 use trueray::film::{Leniency, Picture, read_picture};
+use trueray::precision::Tier;
 use trueray::scene::Scene;
 use trueray::settings::Settings;
 
@@ -53,7 +54,7 @@ fn gpu_matches_every_key_within_f32() {
     let settings = Settings::classic();
     for (subject, scene, key) in keys {
         let effects = Effects::of(&scene, &settings);
-        let (picture, not_finite) = gpu_picture(&gpu, &scene, &settings, &effects);
+        let (picture, not_finite) = gpu_picture(&gpu, Tier::Fast, &scene, &settings, &effects);
         let difference = Difference::between(&picture, &key).unwrap();
         let report = difference.report("GPU", "key");
         assert!(difference.differing.over_0 <= 40 && difference.differing.over_1 <= 8, "{subject}:\n{report}");
@@ -61,7 +62,26 @@ fn gpu_matches_every_key_within_f32() {
 
         let reference = Reference::new(&scene, &settings, &effects);
         let (expected, _) = cpu_picture::<f64>(&scene, &settings, &effects);
-        let explanation = Explanation::of(&picture, &expected, &reference, &Judge::SINGLE);
+        let explanation = Explanation::of(&picture, &expected, &reference, &Judge::of(Tier::Fast));
         assert_eq!(explanation.unexplained, 0, "{subject}:\n{}", explanation.report());
+    }
+}
+
+#[test]
+fn gpu_at_double_matches_every_key_bit_for_bit() {
+    let test = "gpu_at_double_matches_every_key_bit_for_bit";
+    let (Some(keys), Some(gpu)) = (keys(test), gpu(test)) else { return };
+    if !gpu.info.f64 {
+        return say_skipped(test, "the device has no f64");
+    }
+    let settings = Settings::classic();
+    for (subject, scene, key) in keys {
+        let effects = Effects::of(&scene, &settings);
+        let (picture, _) = gpu_picture(&gpu, Tier::Double, &scene, &settings, &effects);
+        let difference = Difference::between(&picture, &key).unwrap();
+        // As for the reference.
+        let allowed = if subject == "Illum" { 3 } else { 0 };
+        assert!(difference.differing.over_0 <= allowed, "{subject}:\n{}", difference.report("GPU", "key"));
+        assert_eq!(difference.differing.over_1, 0, "{subject}");
     }
 }

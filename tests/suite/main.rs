@@ -11,6 +11,7 @@ mod compare;
 mod effects;
 mod film;
 mod keys;
+mod oracle;
 mod parse;
 mod pictures;
 mod shaders;

@@ -5,9 +5,10 @@ use std::path::Path;
 use trueray::compare::Explanation;
 use trueray::cpu::{Judge, Reference};
 use trueray::effects::{Effect, EffectSet, Effects, Request};
-use trueray::engine::{Engine, render_bands};
+use trueray::engine::{Backend, Engine, render_bands};
 use trueray::film::Picture;
 use trueray::gpu::GpuRenderer;
+use trueray::precision::Tier;
 use trueray::settings::{Settings, Specular};
 use trueray::{gpu, tiles};
 
@@ -40,7 +41,7 @@ fn assert_explained(case: &str, picture: &Picture, scene: &trueray::scene::Scene
     let (expected, not_finite) = cpu_picture::<f64>(scene, settings, &effects);
     assert_eq!(not_finite, 0, "{case}: reference");
     let reference = Reference::new(scene, settings, &effects);
-    let explanation = Explanation::of(picture, &expected, &reference, &Judge::SINGLE);
+    let explanation = Explanation::of(picture, &expected, &reference, &Judge::of(Tier::Fast));
     assert_eq!(explanation.unexplained, 0, "{case}:\n{}", explanation.report());
 }
 
@@ -48,7 +49,7 @@ fn assert_explained(case: &str, picture: &Picture, scene: &trueray::scene::Scene
 fn gpu_differs_from_the_reference_only_where_explained() {
     let Some(gpu) = gpu("gpu_differs_from_the_reference_only_where_explained") else { return };
     for_each_case(|case, scene, settings| {
-        let (picture, not_finite) = gpu_picture(&gpu, scene, settings, &Effects::of(scene, settings));
+        let (picture, not_finite) = gpu_picture(&gpu, Tier::Fast, scene, settings, &Effects::of(scene, settings));
         assert_eq!(not_finite, 0, "{case}");
         assert_explained(case, &picture, scene, settings);
     });
@@ -69,8 +70,8 @@ fn what_a_scene_does_not_call_for_changes_no_byte_on_the_gpu() {
     let Some(gpu) = gpu("what_a_scene_does_not_call_for_changes_no_byte_on_the_gpu") else { return };
     for_each_case(|case, scene, settings| {
         let all = Effects::requested(scene, settings, &Request::Exactly(EffectSet::ALL));
-        let (specialised, _) = gpu_picture(&gpu, scene, settings, &Effects::of(scene, settings));
-        let (generic, _) = gpu_picture(&gpu, scene, settings, &all);
+        let (specialised, _) = gpu_picture(&gpu, Tier::Fast, scene, settings, &Effects::of(scene, settings));
+        let (generic, _) = gpu_picture(&gpu, Tier::Fast, scene, settings, &all);
         assert!(specialised == generic, "{case}: {}", Effects::of(scene, settings).set);
     });
 }
@@ -96,7 +97,8 @@ fn switching_off_a_needed_effect_changes_the_picture() {
         assert!(needed.set.has(effect), "{effect}");
         let without = Effects::requested(&scene, &settings, &Request::Changed(vec![(effect, false)]));
         assert!(
-            gpu_picture(&gpu, &scene, &settings, &needed) != gpu_picture(&gpu, &scene, &settings, &without),
+            gpu_picture(&gpu, Tier::Fast, &scene, &settings, &needed)
+                != gpu_picture(&gpu, Tier::Fast, &scene, &settings, &without),
             "{effect}"
         );
         let [with, without] = [needed, without].map(|effects| cpu_picture::<f64>(&scene, &settings, &effects));
@@ -110,8 +112,8 @@ fn bands_give_the_same_bytes_as_one_piece() {
     let scene = scene(&crate::support::root().join("scenes/effects/reflections.txt"));
     let settings = Settings::classic();
     let effects = Effects::of(&scene, &settings);
-    let (whole, _) = gpu_picture(&gpu, &scene, &settings, &effects);
-    let mut renderer = GpuRenderer::new(&gpu, &scene, &settings, &effects).unwrap();
+    let (whole, _) = gpu_picture(&gpu, Tier::Fast, &scene, &settings, &effects);
+    let mut renderer = GpuRenderer::new(&gpu, &scene, &settings, &effects, Tier::Fast).unwrap();
     let row_bytes = scene.width as usize * 3;
     let mut pieces = Vec::new();
     let mut first = 0;
@@ -133,7 +135,7 @@ fn a_large_picture_is_rendered_in_short_dispatches() {
     (scene.width, scene.height) = (4001, 3003);
     let settings = Settings::classic();
     let effects = Effects::of(&scene, &settings);
-    let mut engine = Engine::new(Some(&gpu), &scene, &settings, &effects).unwrap();
+    let mut engine = Engine::new(Backend::Device(&gpu, Tier::Fast), &scene, &settings, &effects).unwrap();
     let mut white = 0_u64;
     let mut bands = 0;
     render_bands(&mut engine, (scene.width, scene.height), |band| {
@@ -159,13 +161,13 @@ fn gpu_counts_the_rays_of_the_reference() {
     );
     let settings = Settings::classic();
     let effects = Effects::of(&scene, &settings);
-    let count = |gpu| {
-        let mut engine = Engine::new(gpu, &scene, &settings, &effects).unwrap();
+    let count = |backend| {
+        let mut engine = Engine::new(backend, &scene, &settings, &effects).unwrap();
         engine.count_rays();
         trueray::engine::render_picture(&mut engine, &scene).unwrap();
         engine.rays().unwrap()
     };
-    let (on_gpu, on_cpu) = (count(Some(&*gpu)), count(None));
+    let (on_gpu, on_cpu) = (count(Backend::Device(&gpu, Tier::Fast)), count(Backend::Reference));
     assert_eq!((on_gpu.shadow, on_gpu.reflection), (on_cpu.shadow, on_cpu.reflection));
     // Tiles without spheres need no rays on the GPU.
     assert!(on_gpu.primary < on_cpu.primary && on_gpu.primary > 0);

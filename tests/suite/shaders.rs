@@ -1,24 +1,31 @@
 //! The composed WGSL: every effect set is valid, and the structs are those of the host.
 
 use trueray::effects::EffectSet;
-use trueray::gpu::layout::{Light, Material, Params, Shape};
+use trueray::gpu::layout::{double, single};
 use trueray::gpu::{ENTRY_POINT, Module, Specialisation};
+
+use trueray::precision::Tier;
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
+/// Every kernel, for any number of spheres and for few.
+fn kinds() -> impl Iterator<Item = (Tier, Option<[u32; 2]>)> {
+    Tier::ALL.into_iter().flat_map(|tier| [(tier, None), (tier, Some([3, 2]))])
+}
+
 fn validate(module: &naga::Module) -> naga::valid::ModuleInfo {
-    Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(module).unwrap()
+    Validator::new(ValidationFlags::all(), Capabilities::FLOAT64).validate(module).unwrap()
 }
 
 #[test]
 fn every_effect_set_is_valid() {
-    for few in [None, Some([3, 2])] {
-        let module = Module::render(few.is_some()).parse().unwrap();
+    for (tier, few) in kinds() {
+        let module = Module::render(tier, few.is_some()).parse().unwrap();
         let info = validate(&module);
         for effects in EffectSet::every() {
             for flags in 0..8 {
                 let [skip_self, blinn, count_rays] = [1, 2, 4].map(|bit| flags & bit != 0);
-                let specialisation = Specialisation { effects, skip_self, blinn, few, count_rays };
+                let specialisation = Specialisation { tier, effects, skip_self, blinn, few, count_rays };
                 let constants = specialisation.constants().into_iter().map(|(name, value)| (name.to_owned(), value));
                 let constants = constants.collect();
                 let entry_point = Some((naga::ShaderStage::Compute, ENTRY_POINT));
@@ -33,11 +40,11 @@ fn every_effect_set_is_valid() {
 /// A constant that the shader does not declare would be ignored silently by the validation above.
 #[test]
 fn every_constant_is_an_override_and_every_override_is_set() {
-    for few in [None, Some([1, 1])] {
-        let module = Module::render(few.is_some()).parse().unwrap();
+    for (tier, few) in kinds() {
+        let module = Module::render(tier, few.is_some()).parse().unwrap();
         let mut declared: Vec<_> = module.overrides.iter().map(|(_, o)| o.name.clone().unwrap()).collect();
         let specialisation =
-            Specialisation { effects: EffectSet::ALL, skip_self: true, blinn: true, few, count_rays: true };
+            Specialisation { tier, effects: EffectSet::ALL, skip_self: true, blinn: true, few, count_rays: true };
         let mut set: Vec<_> = specialisation.constants().into_iter().map(|(name, _)| name.to_owned()).collect();
         declared.sort();
         set.sort();
@@ -50,13 +57,28 @@ type Fields = &'static [(&'static str, usize)];
 
 #[test]
 fn structs_lie_in_memory_as_the_shader_reads_them() {
-    let module = Module::render(false).parse().unwrap();
-    let structs: [(&str, Fields, usize); 4] = [
-        ("Params", Params::FIELDS, size_of::<Params>()),
-        ("Shape", Shape::FIELDS, size_of::<Shape>()),
-        ("Material", Material::FIELDS, size_of::<Material>()),
-        ("Light", Light::FIELDS, size_of::<Light>()),
-    ];
+    assert_layout(
+        Tier::Fast,
+        [
+            ("Params", single::Params::FIELDS, size_of::<single::Params>()),
+            ("Shape", single::Shape::FIELDS, size_of::<single::Shape>()),
+            ("Material", single::Material::FIELDS, size_of::<single::Material>()),
+            ("Light", single::Light::FIELDS, size_of::<single::Light>()),
+        ],
+    );
+    assert_layout(
+        Tier::Double,
+        [
+            ("Params", double::Params::FIELDS, size_of::<double::Params>()),
+            ("Shape", double::Shape::FIELDS, size_of::<double::Shape>()),
+            ("Material", double::Material::FIELDS, size_of::<double::Material>()),
+            ("Light", double::Light::FIELDS, size_of::<double::Light>()),
+        ],
+    );
+}
+
+fn assert_layout(tier: Tier, structs: [(&str, Fields, usize); 4]) {
+    let module = Module::render(tier, false).parse().unwrap();
     for (name, fields, size) in structs {
         let (_, found) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).unwrap();
         let naga::TypeInner::Struct { members, span } = &found.inner else { panic!("{name}") };
@@ -69,13 +91,27 @@ fn structs_lie_in_memory_as_the_shader_reads_them() {
 
 #[test]
 fn bindings_are_numbered_without_gaps() {
-    for few in [false, true] {
-        let module = Module::render(few).parse().unwrap();
+    for (tier, few) in kinds() {
+        let module = Module::render(tier, few.is_some()).parse().unwrap();
         let mut bindings: Vec<_> =
             module.global_variables.iter().filter_map(|(_, v)| Some((v.binding?.binding, v.name.clone()?))).collect();
         bindings.sort();
         let names: Vec<_> = bindings.iter().map(|(_, name)| name.as_str()).collect();
-        let expected = ["params", "shapes", "materials", "lights", "columns", "rows", "tiles", "pixels", "ray_counts"];
+        let expected = [
+            "params",
+            "shapes",
+            "materials",
+            "lights",
+            "columns",
+            "rows",
+            "tiles",
+            "pixels",
+            "ray_counts",
+            "shapes_low",
+            "lights_low",
+            "columns_low",
+            "rows_low",
+        ];
         assert_eq!(names, expected);
         assert!(bindings.iter().enumerate().all(|(i, (binding, _))| i as u32 == *binding));
     }
@@ -83,7 +119,7 @@ fn bindings_are_numbered_without_gaps() {
 
 #[test]
 fn an_error_in_the_shader_names_its_file_and_line() {
-    let mut module = Module::render(false);
+    let mut module = Module::render(Tier::Fast, false);
     let line = 1 + module.text.lines().position(|line| line.contains("fn trace(")).unwrap() as u32;
     let (file, line_in_file) = module.place(line);
     assert_eq!(file, "shaders/trace.wgsl");

@@ -6,9 +6,10 @@ use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 use trueray::cpu::{Real, Reference};
 use trueray::effects::Effects;
-use trueray::engine::{Engine, render_picture};
+use trueray::engine::{Backend, Engine, render_picture};
 use trueray::film::Picture;
 use trueray::gpu::{Choice, Gpu};
+use trueray::precision::Tier;
 use trueray::scene::{Scene, parse};
 use trueray::settings::Settings;
 
@@ -68,8 +69,14 @@ pub(crate) fn scene_of(statements: &str) -> Scene {
 }
 
 /// The GPU's picture and its number of pixels that are not finite.
-pub(crate) fn gpu_picture(gpu: &Gpu, scene: &Scene, settings: &Settings, effects: &Effects) -> (Picture, u64) {
-    let mut engine = Engine::new(Some(gpu), scene, settings, effects).unwrap();
+pub(crate) fn gpu_picture(
+    gpu: &Gpu,
+    tier: Tier,
+    scene: &Scene,
+    settings: &Settings,
+    effects: &Effects,
+) -> (Picture, u64) {
+    let mut engine = Engine::new(Backend::Device(gpu, tier), scene, settings, effects).unwrap();
     let (rgb, not_finite) = render_picture(&mut engine, scene).unwrap();
     (picture(scene, rgb), not_finite)
 }

@@ -117,7 +117,7 @@ fn at_most(what: &str, bound: f64, count: usize, mut error: impl FnMut() -> f64)
 }
 
 #[test]
-fn oracle_sums_and_products_of_two_are_exact() {
+fn sums_and_products_of_two_are_exact() {
     let mut random = Random(1);
     for _ in 0..3000 {
         let (a, b) = (random.number(140.0), random.number(140.0));
@@ -130,7 +130,7 @@ fn oracle_sums_and_products_of_two_are_exact() {
 }
 
 #[test]
-fn oracle_operations_keep_their_bounds() {
+fn operations_keep_their_bounds() {
     let mut random = Random(2);
     at_most("+", 3.0 + 1e-12, 20_000, || {
         let x = random.pair(150.0);
@@ -163,7 +163,7 @@ fn oracle_operations_keep_their_bounds() {
 }
 
 #[test]
-fn oracle_squares_have_their_roots() {
+fn squares_have_their_roots() {
     for n in 1..1000_u32 {
         let n = Dd::from(f64::from(n).sqrt());
         assert_eq!((n * n).sqrt(), n);
@@ -172,7 +172,7 @@ fn oracle_squares_have_their_roots() {
 }
 
 #[test]
-fn oracle_large_and_small_operands() {
+fn large_and_small_operands() {
     let mut random = Random(3);
     at_most("1e150 × 1e150 and / 1e-150", 15.0 + 1e-12, 1000, || {
         let (x, y) = (random.pair(1.0) * Dd::from(1e150), random.pair(1.0) * Dd::from(1e150));
@@ -187,7 +187,7 @@ fn oracle_large_and_small_operands() {
 }
 
 #[test]
-fn oracle_orders_exactly() {
+fn orders_exactly() {
     let mut random = Random(4);
     for _ in 0..3000 {
         let x = random.pair(100.0);
@@ -202,7 +202,7 @@ fn oracle_orders_exactly() {
 }
 
 #[test]
-fn oracle_special_values() {
+fn special_values() {
     let special = [0.0, -0.0, 1.0, -1.0, 1e308, -1e308, f64::MAX, f64::MIN_POSITIVE, 5e-324, f64::INFINITY, f64::NAN];
     let agrees = |x: Dd, expected: f64, what: &str| {
         let same = x.hi() == expected || (x.hi().is_nan() && expected.is_nan());
@@ -238,7 +238,7 @@ fn oracle_special_values() {
 }
 
 #[test]
-fn oracle_constants() {
+fn constants() {
     assert_eq!((Dd::ZERO, Dd::ONE, Dd::FAR), (Dd::from(0.0), Dd::from(1.0), Dd::from(3e38)));
     let third = Dd::from_f64(1.0) / Dd::from_f64(3.0);
     assert_eq!((third.to_f64(), third.hi()), (1.0 / 3.0, 1.0 / 3.0));
@@ -261,31 +261,31 @@ fn big_error(x: Dd, truth: Big) -> f64 {
 }
 
 #[test]
-fn oracle_exponential_and_logarithm() {
+fn exponential_and_logarithm() {
     let mut random = Random(5);
-    at_most("exp of up to ±600", 1e-31 / U2, 600, || {
+    at_most("exp of up to ±600", 2e-31 / U2, 600, || {
         let x = random.pair(4.0);
         let x = if x.abs() > Dd::from(600.0) { x / Dd::from(20.0) } else { x };
         big_error(x.exp(), big(x).exp())
     });
-    at_most("log1p near 0", 1e-31 / U2, 400, || {
+    at_most("log1p near 0", 2e-31 / U2, 400, || {
         let hi = random.sign() * random.magnitude(-100.0, -0.1);
         let x = random.tail(hi);
         big_error(x.log1p(), big(x).ln_1p())
     });
-    at_most("log1p near -1", 1e-31 / U2, 200, || {
+    at_most("log1p near -1", 2e-31 / U2, 200, || {
         let lo = random.magnitude(-100.0, -17.0);
         let x = if random.coin() { Dd::from_sum(-1.0, lo) } else { Dd::from(random.within(-1.0, -0.5)) };
         big_error(x.log1p(), big(x + Dd::ONE).ln())
     });
-    at_most("log1p of large numbers", 1e-31 / U2, 200, || {
+    at_most("log1p of large numbers", 2e-31 / U2, 200, || {
         let x = random.pair(300.0).abs();
         big_error(x.log1p(), big(x).ln_1p())
     });
 }
 
 #[test]
-fn oracle_powers_of_a_highlight() {
+fn powers_of_a_highlight() {
     // cosⁿ as exp(n·log1p(−d)), for exponents up to 3000, against exact powers.
     let mut random = Random(6);
     at_most("highlight", 1e-28 / U2, 20, || {
@@ -444,7 +444,7 @@ fn grazing(random: &mut Random) -> f64 {
 }
 
 #[test]
-fn oracle_ordinary_rays() {
+fn ordinary_rays() {
     check("ordinary", 10, 4000, 1e-28, |random| {
         let (clearance, center, scale) = (random.within(-0.5, 1.0), near_centre(random), ellipsoid(random));
         Case::passing(random, clearance, 5.0, center, scale)
@@ -452,7 +452,7 @@ fn oracle_ordinary_rays() {
 }
 
 #[test]
-fn oracle_far_rays() {
+fn far_rays() {
     check("far", 11, 4000, 1e-25, |random| {
         let (clearance, distance) = (random.within(-0.5, 1.0), random.magnitude(1.0, 7.0));
         let (center, scale) = (near_centre(random), sphere(random));
@@ -461,7 +461,7 @@ fn oracle_far_rays() {
 }
 
 #[test]
-fn oracle_grazing_rays() {
+fn grazing_rays() {
     let findings = check("grazing", 12, 4000, 1e-25, |random| {
         let (clearance, distance) = (grazing(random), random.magnitude(0.0, 1.0));
         let (center, scale) = (near_centre(random), ellipsoid(random));
@@ -471,7 +471,7 @@ fn oracle_grazing_rays() {
 }
 
 #[test]
-fn oracle_origins_near_the_surface() {
+fn origins_near_the_surface() {
     check("near the surface", 13, 4000, 1e-24, |random| {
         let gap = random.sign() * random.magnitude(-7.0, -2.0);
         let (center, scale) = (near_centre(random), ellipsoid(random));
@@ -480,7 +480,7 @@ fn oracle_origins_near_the_surface() {
 }
 
 #[test]
-fn oracle_thin_ellipsoids() {
+fn thin_ellipsoids() {
     check("axis ratio 1e4", 14, 4000, 1e-25, |random| {
         let axis = (random.bits() % 3) as usize;
         let thin = random.coin();
@@ -493,7 +493,7 @@ fn oracle_thin_ellipsoids() {
 }
 
 #[test]
-fn oracle_rays_a_million_away_from_zero() {
+fn rays_a_million_away_from_zero() {
     check("translated by 1e6", 15, 4000, 1e-25, |random| {
         let center = random.unit() * 1e6;
         let (clearance, distance, scale) = (random.within(-0.5, 1.0), random.magnitude(0.0, 1.0), sphere(random));
@@ -502,7 +502,7 @@ fn oracle_rays_a_million_away_from_zero() {
 }
 
 #[test]
-fn oracle_rays_from_inside() {
+fn rays_from_inside() {
     let findings = check("inside", 16, 1000, 1e-25, |random| {
         let (center, scale) = (near_centre(random), ellipsoid(random));
         let origin = random.unit() * random.within(0.0, 0.999);
@@ -512,7 +512,7 @@ fn oracle_rays_from_inside() {
 }
 
 #[test]
-fn oracle_worlds_of_any_size() {
+fn worlds_of_any_size() {
     for (seed, size) in [(17, 1e-30), (18, 1e20)] {
         check(&format!("world of size {size:e}"), seed, 500, 1e-25, |random| {
             let (center, scale) = (near_centre(random) * size, ellipsoid(random) * size);
@@ -523,7 +523,7 @@ fn oracle_worlds_of_any_size() {
 }
 
 #[test]
-fn oracle_everything_at_once() {
+fn everything_at_once() {
     check("everything at once", 19, 4000, 1e-23, |random| {
         let (center, scale) = (random.unit() * random.magnitude(0.0, 6.0), ellipsoid(random));
         let (clearance, distance) = (grazing(random), random.magnitude(0.0, 7.0));
@@ -532,7 +532,7 @@ fn oracle_everything_at_once() {
 }
 
 #[test]
-fn oracle_exact_tangents() {
+fn exact_tangents() {
     // Axes of powers of two: nothing is rounded, so touching is touching.
     for (offset, meets) in [(2.0, true), (2.0_f64.next_down(), true), (2.0_f64.next_up(), false)] {
         let case = (DVec3::new(-3.0, offset, 0.0), DVec3::X, DVec3::ZERO, DVec3::new(8.0, 2.0, 0.5));
@@ -549,7 +549,21 @@ fn oracle_exact_tangents() {
 }
 
 #[test]
-fn oracle_of_nothing_is_no_hit() {
+fn roots_do_not_cancel() {
+    // 1e-13 from the surface, with few enough bits that |S'|² − 1 is exact: the near root keeps every digit.
+    for (y, z) in [(1.0, -1.0), (-1.0, 1.0), (0.5, 1.0)] {
+        let (offset, gap) = (1.0 / (1_u64 << 20) as f64, 1.0 / (1_u64 << 45) as f64);
+        for gap in [gap, -gap] {
+            let origin = DVec3::new(0.0, offset, 1.0 + gap);
+            let case =
+                Case { origin, direction: DVec3::new(0.0, y / 1024.0, z), center: DVec3::ZERO, scale: DVec3::ONE };
+            Findings::default().add(&case, 1e-30);
+        }
+    }
+}
+
+#[test]
+fn nothing_is_no_hit() {
     let (o, d, c, s) = (DVec3::new(-3.0, 0.0, 0.0), DVec3::X, DVec3::ZERO, DVec3::ONE);
     for (o, d, c, s) in [
         (o, DVec3::ZERO, c, s),

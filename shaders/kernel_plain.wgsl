@@ -1,0 +1,122 @@
+// Ray against sphere in plain arithmetic, f32 or f64; read it beside src/cpu/intersect.rs.
+//
+// The quadratic |c'|^2 t^2 + 2(S'.c')t + |S'|^2 - r^2 = 0 in its numerically sound form: the discriminant from the distance of
+// the ray to the centre, the roots as a stable pair (Haines, Gunther, Akenine-Moller, "Precision Improvements for Ray/Sphere
+// Intersection", Ray Tracing Gems, chapter 7).
+
+// A place in the world.
+alias Point = vec3r;
+
+// origin + t direction; the direction need not be normalised.
+struct Ray {
+    origin: Point,
+    direction: vec3r,
+    // direction . direction, and one over it.
+    a: real,
+    inv_a: real,
+}
+
+fn ray_from(origin: Point, direction: vec3r) -> Ray {
+    let a = dot(direction, direction);
+    return Ray(origin, direction, a, real(1.0) / a);
+}
+
+fn primary_ray(pixel: vec2<u32>) -> Ray {
+    return ray_from(vec3r(), vec3r(columns[pixel.x], rows[pixel.y], -params.near));
+}
+
+// From a point to a light, which lies at t = 1.
+fn ray_to_light(origin: Point, light: u32) -> Ray {
+    return ray_from(origin, lights[light].position - origin);
+}
+
+fn direction_of(ray: Ray) -> vec3r {
+    return ray.direction;
+}
+
+// A ray's closest approach to a sphere's centre, in the sphere's object space.
+struct Approach {
+    // S': origin minus centre.
+    origin: vec3r,
+    // c'.
+    direction: vec3r,
+    // c'.c'.
+    a: real,
+    // -S'.c'.
+    b: real,
+    // From the centre to the closest point of the line.
+    perpendicular: vec3r,
+    // radius^2 - |perpendicular|^2: negative where the line misses.
+    discriminant: real,
+}
+
+fn approach(ray: Ray, sphere: u32) -> Approach {
+    let shape = shapes[sphere];
+    var origin = ray.origin - shape.center;
+    var direction = ray.direction;
+    var a = ray.a;
+    var inv_a = ray.inv_a;
+    if ELLIPSOIDS {
+        origin *= shape.inv_scale;
+        direction *= shape.inv_scale;
+        a = dot(direction, direction);
+        inv_a = real(1.0) / a;
+    }
+    let b = -dot(origin, direction);
+    // An error of b/a moves the point along the ray, which changes its distance to second order only.
+    let perpendicular = origin + direction * (b * inv_a);
+    let discriminant = shape.radius * shape.radius - dot(perpendicular, perpendicular);
+    return Approach(origin, direction, a, b, perpendicular, discriminant);
+}
+
+// Both intersections of the line.
+struct Roots {
+    // Whether there are any. Ordered comparisons decide: a NaN is never a hit.
+    exist: bool,
+    lesser: real,
+    greater: real,
+}
+
+fn roots(ray: Ray, sphere: u32) -> Roots {
+    let at = approach(ray, sphere);
+    let radius = shapes[sphere].radius;
+    let hits = at.discriminant >= real(0.0);
+    let root = sqrt(at.a * at.discriminant);
+    let c = dot(at.origin, at.origin) - radius * radius;
+    if at.b >= real(0.0) {
+        let q = at.b + root;
+        return Roots(hits, c / q, q / at.a);
+    }
+    let q = at.b - root;
+    return Roots(hits, q / at.a, c / q);
+}
+
+// Whether a root lies beyond t_min and before t = 1: from where both ends lie, without a square root.
+fn root_between(ray: Ray, sphere: u32, t_min: real) -> bool {
+    let at = approach(ray, sphere);
+    let radius = shapes[sphere].radius;
+    let start = at.origin + at.direction * t_min;
+    let end = at.origin + at.direction;
+    let starts_outside = dot(start, start) > radius * radius;
+    let ends_outside = dot(end, end) > radius * radius;
+    let passes = starts_outside && ends_outside && at.b > at.a * t_min && at.b < at.a;
+    return at.discriminant >= real(0.0) && (starts_outside != ends_outside || passes);
+}
+
+// The hit in object space: from the closest approach half a chord back or forth, since S' + t c' would lose what distance costs.
+fn local_hit(ray: Ray, hit: Hit) -> vec3r {
+    let at = approach(ray, hit.sphere);
+    let half_chord = at.direction * sqrt(max(at.discriminant, real(0.0)) / at.a);
+    if hit.inside {
+        return at.perpendicular + half_chord;
+    }
+    return at.perpendicular - half_chord;
+}
+
+// The place of a point of the sphere's surface, given in object space.
+fn place_of(sphere: u32, local: vec3r) -> Point {
+    if ELLIPSOIDS {
+        return shapes[sphere].center + local * materials[sphere].scale;
+    }
+    return shapes[sphere].center + local;
+}

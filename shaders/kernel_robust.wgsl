@@ -1,0 +1,124 @@
+// Ray against sphere in f32 with error-free transforms where rounding would decide; the same functions as kernel_plain.wgsl.
+//
+// Far from the sphere the discriminant is A r^2 - |S' x c'|^2 (Lagrange's identity), whose cross product is compensated; near
+// its surface, where that cancels, it is B^2 - A C with compensated B and C. Origins, directions, centres and scales carry
+// what rounding took from them.
+
+// A place in the world.
+alias Point = Pair3;
+
+// origin + t direction; the direction need not be normalised.
+struct Ray {
+    origin: Point,
+    direction: Pair3,
+    // direction . direction, of the high parts.
+    a: real,
+}
+
+fn ray_with(origin: Point, direction: Pair3) -> Ray {
+    return Ray(origin, direction, dot(direction.hi, direction.hi));
+}
+
+fn ray_from(origin: Point, direction: vec3r) -> Ray {
+    return ray_with(origin, Pair3(direction, vec3r()));
+}
+
+fn primary_ray(pixel: vec2<u32>) -> Ray {
+    let high = vec3r(columns[pixel.x], rows[pixel.y], -params.near);
+    let low = vec3r(columns_low[pixel.x], rows_low[pixel.y], -params.near_low);
+    return ray_with(Point(vec3r(), vec3r()), Pair3(high, low));
+}
+
+// From a point to a light, which lies at t = 1.
+fn ray_to_light(origin: Point, light: u32) -> Ray {
+    return ray_with(origin, pair_difference3(Pair3(lights[light].position, lights_low[light].position), origin));
+}
+
+fn direction_of(ray: Ray) -> vec3r {
+    return ray.direction.hi;
+}
+
+// The ray in the sphere's object space.
+struct Approach {
+    // c'.
+    direction: vec3r,
+    // S' x c'.
+    moment: vec3r,
+    // c'.c', -S'.c' and S'.S' - r^2.
+    a: Pair,
+    b: Pair,
+    c: Pair,
+    // B^2 - A C: negative where the line misses.
+    discriminant: real,
+}
+
+fn approach(ray: Ray, sphere: u32) -> Approach {
+    let shape = shapes[sphere];
+    let low = shapes_low[sphere];
+    var origin = pair_difference3(ray.origin, Pair3(shape.center, low.center));
+    var direction = ray.direction;
+    if ELLIPSOIDS {
+        let inv_scale = Pair3(shape.inv_scale, low.inv_scale);
+        origin = pair_product3(origin, inv_scale);
+        direction = pair_product3(direction, inv_scale);
+    }
+    let moment = pair_cross(origin, direction);
+    let a = pair_dot(direction, direction);
+    let minus_b = pair_dot(origin, direction);
+    let radius = Pair(shape.radius, low.radius);
+    let radius_squared = pair_product(radius, radius);
+    let c = pair_difference(pair_dot(origin, origin), radius_squared);
+    let far = pair_difference(pair_product(a, radius_squared), pair_dot(moment, moment));
+    let near = pair_difference(pair_product(minus_b, minus_b), pair_product(a, c));
+    let is_near = abs(c.hi) < 0.5 * radius_squared.hi;
+    return Approach(direction.hi, moment.hi, a, Pair(-minus_b.hi, -minus_b.lo), c, select(far.hi, near.hi, is_near));
+}
+
+// Both intersections of the line.
+struct Roots {
+    // Whether there are any. Ordered comparisons decide: a NaN is never a hit.
+    exist: bool,
+    lesser: real,
+    greater: real,
+}
+
+fn roots(ray: Ray, sphere: u32) -> Roots {
+    let at = approach(ray, sphere);
+    let hits = at.discriminant >= 0.0;
+    let root = sqrt(at.discriminant);
+    if at.b.hi >= 0.0 {
+        let q = at.b.hi + (root + at.b.lo);
+        return Roots(hits, at.c.hi / q, q / at.a.hi);
+    }
+    let q = at.b.hi - (root - at.b.lo);
+    return Roots(hits, q / at.a.hi, at.c.hi / q);
+}
+
+// Whether a root lies beyond t_min and before t = 1.
+fn root_between(ray: Ray, sphere: u32, t_min: real) -> bool {
+    let at = roots(ray, sphere);
+    let lesser = at.lesser > t_min && at.lesser < 1.0;
+    let greater = at.lesser <= t_min && at.greater > t_min && at.greater < 1.0;
+    return at.exist && (lesser || greater);
+}
+
+// The hit in object space: from the closest approach c' x (S' x c') / A half a chord back or forth.
+fn local_hit(ray: Ray, hit: Hit) -> vec3r {
+    let at = approach(ray, hit.sphere);
+    let perpendicular = cross(at.direction, at.moment) / at.a.hi;
+    let half_chord = at.direction * (sqrt(max(at.discriminant, 0.0)) / at.a.hi);
+    if hit.inside {
+        return perpendicular + half_chord;
+    }
+    return perpendicular - half_chord;
+}
+
+// The place of a point of the sphere's surface, given in object space.
+fn place_of(sphere: u32, local: vec3r) -> Point {
+    var offset = local;
+    if ELLIPSOIDS {
+        offset *= materials[sphere].scale;
+    }
+    let place = two_sum3(shapes[sphere].center, offset);
+    return fast_two_sum3(place.hi, place.lo + shapes_low[sphere].center);
+}
