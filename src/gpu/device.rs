@@ -7,7 +7,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use serde::Serialize;
 
 use super::error::Error;
+use super::selftest::SelfTest;
 use super::shader::Module;
+use crate::precision::Tier;
 
 /// Which device renders.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -182,6 +184,19 @@ impl Gpu {
         device.set_device_lost_callback(move |_, message| note(&slot, message));
         let mappable = features.contains(wgpu::Features::MAPPABLE_PRIMARY_BUFFERS);
         Ok(Self { info, device, queue, mappable, failure })
+    }
+
+    /// Whether the device can run the kernel of `tier`; a refusal says why.
+    pub fn require(&self, tier: Tier) -> Result<(), Error> {
+        match tier {
+            Tier::Fast => Ok(()),
+            Tier::Robust => SelfTest::require(self),
+            Tier::Double if self.info.f64 => Ok(()),
+            Tier::Double => Err(Error::NoDevice(format!(
+                "{} has no f64 in shaders, which precision `double` needs; `--precision robust` and `--device cpu` do not",
+                self.info
+            ))),
+        }
     }
 
     /// Runs `action` and turns what the device reported meanwhile into an error.

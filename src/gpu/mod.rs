@@ -7,10 +7,12 @@ mod pack;
 mod pipeline;
 mod readable;
 mod render;
+mod selftest;
 mod shader;
 
 pub use device::{Choice, DeviceInfo, Gpu, list};
 pub use error::Error;
 pub use pipeline::{ENTRY_POINT, Specialisation};
 pub use render::{DeviceTimes, GpuRenderer};
+pub use selftest::SelfTest;
 pub use shader::Module;

@@ -83,6 +83,7 @@ struct Kernel {
 impl<'a> GpuRenderer<'a> {
     /// Prepares `scene` for `gpu`; the kernel is compiled when the first tile needs it.
     pub fn new(gpu: &'a Gpu, scene: &Scene, settings: &Settings, effects: &Effects, tier: Tier) -> Result<Self, Error> {
+        gpu.require(tier)?;
         let (scene, settings) = in_range(scene, settings);
         let (scene, settings) = (scene.as_ref(), &settings);
         let packed = Packed::new(scene, settings, effects, tier);

@@ -51,6 +51,11 @@ impl Module {
         Self::join(parts)
     }
 
+    /// The module that tries error-free transforms.
+    pub fn selftest() -> Self {
+        Self::join(vec![part!("real_f32.wgsl"), part!("types.wgsl"), part!("eft.wgsl"), part!("selftest.wgsl")])
+    }
+
     fn join(parts: Vec<Part>) -> Self {
         Self { text: parts.iter().map(|part| part.text).collect(), parts }
     }

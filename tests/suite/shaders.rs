@@ -2,7 +2,7 @@
 
 use trueray::effects::EffectSet;
 use trueray::gpu::layout::{double, single};
-use trueray::gpu::{ENTRY_POINT, Module, Specialisation};
+use trueray::gpu::{ENTRY_POINT, Module, SelfTest, Specialisation};
 
 use trueray::precision::Tier;
 
@@ -129,4 +129,14 @@ fn an_error_in_the_shader_names_its_file_and_line() {
     module.text = module.text.replace("fn trace(primary: Ray)", "fn trace(primary: Roy)");
     let error = module.parse().unwrap_err();
     assert!(error.contains(&format!("shaders/trace.wgsl:{line_in_file}:")), "{error}");
+}
+
+#[test]
+fn error_free_transforms_are_exact_on_this_device() {
+    let Some(gpu) = crate::support::gpu("error_free_transforms_are_exact_on_this_device") else { return };
+    validate(&Module::selftest().parse().unwrap());
+    let test = SelfTest::run(&gpu).unwrap();
+    // A device that fails is refused by the tier that needs them; the software drivers of the CI do not.
+    assert_eq!((test.sum_mismatches, test.product_mismatches), (0, 0), "{}", gpu.info);
+    gpu.require(Tier::Robust).unwrap();
 }

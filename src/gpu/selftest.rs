@@ -1,0 +1,162 @@
+//! Whether error-free transforms survive this device's compiler and arithmetic: WGSL guarantees nothing, so it is tried.
+
+use std::path::PathBuf;
+
+use serde::Serialize;
+use wgpu::util::DeviceExt;
+
+use super::device::Gpu;
+use super::error::Error;
+use super::layout::single::Params;
+use super::readable::Readable;
+use super::shader::Module;
+
+/// Pairs that are transformed.
+const PAIRS: usize = 1 << 18;
+/// Workgroup size of the kernel.
+const GROUP: usize = 64;
+
+/// How the device's error-free transforms compare with exact arithmetic.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct SelfTest {
+    /// Pairs of operands.
+    pub pairs: usize,
+    /// Pairs whose sum or its error has other bits than the exact ones.
+    pub sum_mismatches: usize,
+    /// Pairs whose product or its error has other bits than the exact ones.
+    pub product_mismatches: usize,
+}
+
+impl SelfTest {
+    /// Transforms pairs on the device and compares bit for bit.
+    pub fn run(gpu: &Gpu) -> Result<Self, Error> {
+        let operands = operands();
+        let results = transform(gpu, &operands)?;
+        let mut test = Self { pairs: PAIRS, sum_mismatches: 0, product_mismatches: 0 };
+        for (&[a, b], result) in operands.iter().zip(results.as_chunks::<4>().0) {
+            let [sum, sum_error, product, product_error] = result.map(f32::from_bits);
+            test.sum_mismatches += usize::from((sum, sum_error) != two_sum(a, b));
+            test.product_mismatches += usize::from((product, product_error) != two_product(a, b));
+        }
+        Ok(test)
+    }
+
+    /// Whether every result is exact.
+    pub fn passed(&self) -> bool {
+        self.sum_mismatches == 0 && self.product_mismatches == 0
+    }
+
+    /// Refuses a device that fails; a device that passed with this driver and shader is not asked again.
+    pub(super) fn require(gpu: &Gpu) -> Result<(), Error> {
+        let record = record_of_pass(gpu);
+        if record.as_ref().is_some_and(|file| file.exists()) {
+            return Ok(());
+        }
+        let test = Self::run(gpu)?;
+        if !test.passed() {
+            let Self { pairs, sum_mismatches, product_mismatches } = test;
+            return Err(Error::NoDevice(format!(
+                "{} does not keep error-free transforms: of {pairs} pairs, {sum_mismatches} sums and \
+                 {product_mismatches} products are off. Precision `robust` needs them; `double` and `--device cpu` do not",
+                gpu.info
+            )));
+        }
+        // Without a cache folder the test, which takes milliseconds, is simply made again.
+        if let Some(file) = record
+            && let Some(folder) = file.parent()
+        {
+            let _ = std::fs::create_dir_all(folder).and_then(|()| std::fs::write(&file, "passed\n"));
+        }
+        Ok(())
+    }
+}
+
+/// The file that stands for a pass of this device, driver and shader, in the user's cache folder.
+fn record_of_pass(gpu: &Gpu) -> Option<PathBuf> {
+    let cache = std::env::var_os("XDG_CACHE_HOME")
+        .map(PathBuf::from)
+        .filter(|path| path.is_absolute())
+        .or_else(|| Some(PathBuf::from(std::env::var_os("HOME")?).join(".cache")))?;
+    let info = &gpu.info;
+    let text = Module::selftest().text;
+    // FNV-1a; a collision would need two drivers on one machine that differ in nothing else.
+    let hash = [&info.name, &info.driver, &info.pci, &text]
+        .iter()
+        .flat_map(|part| part.bytes().chain([0]))
+        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
+    Some(cache.join("trueray").join(format!("transforms-{hash:016x}")))
+}
+
+/// Operands of all signs whose exponents differ by up to 40, from SplitMix64 (Steele, Lea, Flood, "Fast splittable
+/// pseudorandom number generators", 2014).
+fn operands() -> Vec<[f32; 2]> {
+    let mut state = 0_u64;
+    let mut next = || {
+        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    };
+    let mut operand = || {
+        let bits = next();
+        let exponent = 107 + (bits >> 32) as u32 % 41;
+        f32::from_bits((bits as u32 & 0x807f_ffff) | (exponent << 23))
+    };
+    (0..PAIRS).map(|_| [operand(), operand()]).collect()
+}
+
+/// Knuth's transform; Rust's arithmetic is that of IEEE 754.
+fn two_sum(a: f32, b: f32) -> (f32, f32) {
+    let sum = a + b;
+    let b_part = sum - a;
+    (sum, (a - (sum - b_part)) + (b - b_part))
+}
+
+/// The product of two `f32` is exact in `f64`.
+fn two_product(a: f32, b: f32) -> (f32, f32) {
+    let product = a * b;
+    (product, (f64::from(a) * f64::from(b) - f64::from(product)) as f32)
+}
+
+fn transform(gpu: &Gpu, operands: &[[f32; 2]]) -> Result<Vec<u32>, Error> {
+    let module = gpu.shader_module(&Module::selftest())?;
+    let results = gpu.checked("the self-test of error-free transforms", || {
+        let device = &gpu.device;
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: None,
+            layout: None,
+            module: &module,
+            entry_point: None,
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        });
+        let filled = |contents, usage| {
+            device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
+        };
+        let params: Params = bytemuck::Zeroable::zeroed();
+        let params = filled(bytemuck::bytes_of(&params), wgpu::BufferUsages::UNIFORM);
+        let operands = filled(bytemuck::cast_slice(operands), wgpu::BufferUsages::STORAGE);
+        let results = Readable::new(gpu, PAIRS as u64 * 4);
+        let entry = |binding, buffer: &wgpu::Buffer| (binding, buffer.clone());
+        let buffers = [entry(0, &params), entry(20, &operands), entry(21, &results.buffer)];
+        let entries = buffers
+            .each_ref()
+            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding: *binding, resource: buffer.as_entire_binding() });
+        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &entries,
+        });
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_pipeline(&pipeline);
+            pass.set_bind_group(0, &bind_group, &[]);
+            pass.dispatch_workgroups((PAIRS / GROUP) as u32, 1, 1);
+        }
+        gpu.queue.submit([encoder.finish()]);
+        results
+    })?;
+    results.read(gpu, PAIRS * 4, <[u32]>::to_vec)
+}
