@@ -60,8 +60,11 @@ impl FromStr for Request {
 /// What a tier covers; beyond it the tier promises nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Promise {
-    /// Greatest distance of a ray's origin from a sphere, in least semi-axes of the sphere.
+    /// Greatest distance of the eye from a sphere, in least semi-axes of the sphere.
     pub distance: f64,
+    /// The same for any other surface, where shadow and reflection rays start: an error there moves the edge of a shadow or
+    /// of a mirror image by a part of the sphere's radius, not the edge of the sphere itself.
+    pub secondary_distance: f64,
     /// Least distance of the eye or a light from a surface, in semi-axes.
     pub nearness: f64,
     /// Greatest ratio of a sphere's semi-axes.
@@ -76,9 +79,30 @@ impl Tier {
     /// What the tier covers.
     pub fn promise(self) -> Promise {
         match self {
-            Self::Fast => Promise { distance: 1e3, nearness: 1e-2, axis_ratio: 1e4, gap: 1e-5, exponent: 1e6 },
-            Self::Robust => Promise { distance: 1e7, nearness: 1e-7, axis_ratio: 1e4, gap: 1e-6, exponent: 1e6 },
-            Self::Double => Promise { distance: 1e9, nearness: 1e-12, axis_ratio: 1e6, gap: 1e-13, exponent: 1e12 },
+            Self::Fast => Promise {
+                distance: 1e3,
+                secondary_distance: 1e4,
+                nearness: 1e-2,
+                axis_ratio: 1e4,
+                gap: 1e-5,
+                exponent: 1e6,
+            },
+            Self::Robust => Promise {
+                distance: 1e7,
+                secondary_distance: 1e7,
+                nearness: 1e-7,
+                axis_ratio: 1e4,
+                gap: 1e-6,
+                exponent: 1e6,
+            },
+            Self::Double => Promise {
+                distance: 1e9,
+                secondary_distance: 1e9,
+                nearness: 1e-12,
+                axis_ratio: 1e6,
+                gap: 1e-13,
+                exponent: 1e12,
+            },
         }
     }
 }
@@ -86,8 +110,10 @@ impl Tier {
 /// How hard a scene is, in the terms of [`Promise`]; each with the sphere that makes it so.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Demand {
-    /// Greatest distance of an origin from a sphere, in least semi-axes.
+    /// Greatest distance of the eye from a sphere, in least semi-axes.
     pub distance: Extreme,
+    /// Greatest distance of a surface from a sphere, in least semi-axes of the latter.
+    pub secondary_distance: Extreme,
     /// Least distance of the eye or a light from a surface, in semi-axes.
     pub nearness: Extreme,
     /// Greatest ratio of semi-axes.
@@ -129,8 +155,14 @@ impl Demand {
     pub fn of(scene: &Scene, effects: &Effects) -> Self {
         let least = Extreme { value: 0.0, sphere: None };
         let greatest = Extreme { value: f64::INFINITY, sphere: None };
-        let mut demand =
-            Self { distance: least, nearness: greatest, axis_ratio: least, gap: greatest, exponent: least };
+        let mut demand = Self {
+            distance: least,
+            secondary_distance: least,
+            nearness: greatest,
+            axis_ratio: least,
+            gap: greatest,
+            exponent: least,
+        };
         // Shadow and reflection rays start on any surface.
         let secondary = effects.set.has(Effect::Shadows) || effects.set.has(Effect::Reflections);
         let bounds = scene.spheres.iter().map(|s| (s.center - s.scale.abs(), s.center + s.scale.abs()));
@@ -148,7 +180,7 @@ impl Demand {
             demand.distance.raise(sphere.center.length() / short, index);
             if secondary && scene.spheres.len() > 1 {
                 let corner = (sphere.center - low).abs().max((sphere.center - high).abs());
-                demand.distance.raise(corner.length() / short, index);
+                demand.secondary_distance.raise(corner.length() / short, index);
             }
             for origin in &origins {
                 let height = ((*origin - sphere.center) / scale).length() - 1.0;
@@ -192,7 +224,10 @@ impl Demand {
             (demand.value < limit)
                 .then(|| format!("{what} {:.3e} of {} is below {limit:.0e}", demand.value, name(demand)))
         };
-        above("distance over radius", &self.distance, promise.distance)
+        above("eye distance over radius", &self.distance, promise.distance)
+            .or_else(|| {
+                above("distance of a surface over radius", &self.secondary_distance, promise.secondary_distance)
+            })
             .or_else(|| below("nearness of an origin to the surface", &self.nearness, promise.nearness))
             .or_else(|| above("axis ratio", &self.axis_ratio, promise.axis_ratio))
             .or_else(|| below("gap to a nested surface", &self.gap, promise.gap))
@@ -201,10 +236,10 @@ impl Demand {
 
     /// The demands, a line.
     pub fn summary(&self) -> String {
-        let Self { distance, nearness, axis_ratio, gap, exponent } = self;
+        let Self { distance, secondary_distance, nearness, axis_ratio, gap, exponent } = self;
         format!(
-            "distance/radius {:.3e}, nearness {:.3e}, axis ratio {:.3e}, nested gap {:.3e}, exponent {}",
-            distance.value, nearness.value, axis_ratio.value, gap.value, exponent.value
+            "distance/radius {:.3e} (eye), {:.3e} (surfaces), nearness {:.3e}, axis ratio {:.3e}, nested gap {:.3e}, exponent {}",
+            distance.value, secondary_distance.value, nearness.value, axis_ratio.value, gap.value, exponent.value
         )
     }
 }
