@@ -186,6 +186,11 @@ impl Gpu {
         Ok(Self { info, device, queue, mappable, failure })
     }
 
+    /// Gives the device up: whatever is still asked of it fails as lost.
+    pub fn destroy(&self) {
+        self.device.destroy();
+    }
+
     /// Whether the device can run the kernel of `tier`; a refusal says why.
     pub fn require(&self, tier: Tier) -> Result<(), Error> {
         match tier {

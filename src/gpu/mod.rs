@@ -1,6 +1,8 @@
 //! The GPU path: a WGSL compute shader on any Vulkan device.
 
+mod compute;
 mod device;
+mod echo;
 mod error;
 pub mod layout;
 mod pack;
@@ -11,6 +13,7 @@ mod selftest;
 mod shader;
 
 pub use device::{Choice, DeviceInfo, Gpu, list};
+pub use echo::echo_layout;
 pub use error::Error;
 pub use pipeline::{ENTRY_POINT, Specialisation};
 pub use render::{DeviceTimes, GpuRenderer};

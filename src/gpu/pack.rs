@@ -9,7 +9,7 @@ use crate::effects::{Effect, Effects};
 use crate::geometry::{Ellipsoid, ellipsoids, shape_indices};
 use crate::precision::Tier;
 use crate::scene::{Light, Scene};
-use crate::settings::Settings;
+use crate::settings::{Secondary, Settings};
 use crate::tiles::TILE;
 
 /// The contents of the buffers, and the size of one element of those that loops read.
@@ -56,7 +56,11 @@ fn pack<L: Layout>(scene: &Scene, settings: &Settings, effects: &Effects, with_l
     let on = |effect| effects.set.has(effect);
     let camera = Camera::new(scene, settings.sampling);
     let ellipsoids = ellipsoids(scene, on(Effect::Ellipsoids));
-    let shapes = shape_values(&ellipsoids, on(Effect::Ellipsoids));
+    let indices = match settings.secondary {
+        Secondary::SkipSelf => shape_indices(&ellipsoids),
+        Secondary::Epsilon { .. } => (0..ellipsoids.len() as u32).collect(),
+    };
+    let shapes = shape_values(&ellipsoids, indices, on(Effect::Ellipsoids));
     let columns: Vec<f64> = (0..scene.width.next_multiple_of(TILE)).map(|i| camera.x(i)).collect();
     let rows: Vec<f64> = (0..scene.height.next_multiple_of(TILE)).map(|j| camera.y(j)).collect();
 
@@ -107,7 +111,7 @@ fn pack<L: Layout>(scene: &Scene, settings: &Settings, effects: &Effects, with_l
 
 /// What the intersection reads of each sphere; without the way into object space, what is exact there, a power of two, goes
 /// into the radius.
-fn shape_values(ellipsoids: &[Ellipsoid], object_space: bool) -> Vec<ShapeValues> {
+fn shape_values(ellipsoids: &[Ellipsoid], indices: Vec<u32>, object_space: bool) -> Vec<ShapeValues> {
     let value = |(ellipsoid, index): (&Ellipsoid, u32)| {
         let (inv_scale, radius) = if object_space {
             (ellipsoid.inv_scale, ellipsoid.radius)
@@ -116,7 +120,7 @@ fn shape_values(ellipsoids: &[Ellipsoid], object_space: bool) -> Vec<ShapeValues
         };
         ShapeValues { center: ellipsoid.center, radius, inv_scale, index }
     };
-    ellipsoids.iter().zip(shape_indices(ellipsoids)).map(value).collect()
+    ellipsoids.iter().zip(indices).map(value).collect()
 }
 
 fn bytes<T: Pod>(values: impl IntoIterator<Item = T>) -> Vec<u8> {

@@ -2,14 +2,12 @@
 
 use std::path::PathBuf;
 
-use serde::Serialize;
-use wgpu::util::DeviceExt;
-
+use super::compute::{Job, Space};
 use super::device::Gpu;
 use super::error::Error;
 use super::layout::single::Params;
-use super::readable::Readable;
 use super::shader::Module;
+use serde::Serialize;
 
 /// Pairs that are transformed.
 const PAIRS: usize = 1 << 18;
@@ -87,7 +85,7 @@ fn record_of_pass(gpu: &Gpu) -> Option<PathBuf> {
     Some(cache.join("trueray").join(format!("transforms-{hash:016x}")))
 }
 
-/// Operands of all signs whose exponents differ by up to 40, from SplitMix64 (Steele, Lea, Flood, "Fast splittable
+/// Operands of all signs whose exponents differ by up to 40, from `SplitMix64` (Steele, Lea, Flood, "Fast splittable
 /// pseudorandom number generators", 2014).
 fn operands() -> Vec<[f32; 2]> {
     let mut state = 0_u64;
@@ -120,43 +118,17 @@ fn two_product(a: f32, b: f32) -> (f32, f32) {
 }
 
 fn transform(gpu: &Gpu, operands: &[[f32; 2]]) -> Result<Vec<u32>, Error> {
-    let module = gpu.shader_module(&Module::selftest())?;
-    let results = gpu.checked("the self-test of error-free transforms", || {
-        let device = &gpu.device;
-        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: None,
-            layout: None,
-            module: &module,
-            entry_point: None,
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            cache: None,
-        });
-        let filled = |contents, usage| {
-            device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
-        };
-        let params: Params = bytemuck::Zeroable::zeroed();
-        let params = filled(bytemuck::bytes_of(&params), wgpu::BufferUsages::UNIFORM);
-        let operands = filled(bytemuck::cast_slice(operands), wgpu::BufferUsages::STORAGE);
-        let results = Readable::new(gpu, PAIRS as u64 * 4);
-        let entry = |binding, buffer: &wgpu::Buffer| (binding, buffer.clone());
-        let buffers = [entry(0, &params), entry(20, &operands), entry(21, &results.buffer)];
-        let entries = buffers
-            .each_ref()
-            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding: *binding, resource: buffer.as_entire_binding() });
-        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: None,
-            layout: &pipeline.get_bind_group_layout(0),
-            entries: &entries,
-        });
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-            pass.set_pipeline(&pipeline);
-            pass.set_bind_group(0, &bind_group, &[]);
-            pass.dispatch_workgroups((PAIRS / GROUP) as u32, 1, 1);
-        }
-        gpu.queue.submit([encoder.finish()]);
-        results
-    })?;
-    results.read(gpu, PAIRS * 4, <[u32]>::to_vec)
+    let params: Params = bytemuck::Zeroable::zeroed();
+    let job = Job {
+        what: "the self-test of error-free transforms",
+        module: &Module::selftest(),
+        inputs: &[
+            (0, Space::Uniform, bytemuck::bytes_of(&params)),
+            (20, Space::Storage, bytemuck::cast_slice(operands)),
+        ],
+        output: 21,
+        output_len: operands.len() * 4,
+        groups: (PAIRS / GROUP) as u32,
+    };
+    job.run(gpu)
 }

@@ -19,14 +19,19 @@ macro_rules! part {
     };
 }
 
-/// The parts that intersect rays with spheres, in order.
-fn intersection_parts(tier: Tier, few: bool) -> Vec<Part> {
-    let mut parts = vec![
-        part!("effects.wgsl"),
+/// The scalar of `tier` and what the host packs.
+fn data_parts(tier: Tier, few: bool) -> Vec<Part> {
+    vec![
         if tier == Tier::Double { part!("real_f64.wgsl") } else { part!("real_f32.wgsl") },
         part!("types.wgsl"),
         if few { part!("few.wgsl") } else { part!("many.wgsl") },
-    ];
+    ]
+}
+
+/// The parts that intersect rays with spheres, in order.
+fn intersection_parts(tier: Tier, few: bool) -> Vec<Part> {
+    let mut parts = vec![part!("effects.wgsl")];
+    parts.extend(data_parts(tier, few));
     match tier {
         Tier::Fast | Tier::Double => parts.push(part!("kernel_plain.wgsl")),
         Tier::Robust => parts.extend([part!("eft.wgsl"), part!("kernel_robust.wgsl")]),
@@ -54,6 +59,13 @@ impl Module {
     /// The module that tries error-free transforms.
     pub fn selftest() -> Self {
         Self::join(vec![part!("real_f32.wgsl"), part!("types.wgsl"), part!("eft.wgsl"), part!("selftest.wgsl")])
+    }
+
+    /// The module that writes back what it reads.
+    pub fn echo(tier: Tier) -> Self {
+        let mut parts = data_parts(tier, false);
+        parts.push(part!("echo.wgsl"));
+        Self::join(parts)
     }
 
     fn join(parts: Vec<Part>) -> Self {

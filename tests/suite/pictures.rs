@@ -242,3 +242,21 @@ fn the_margins_explain_little() {
         }
     }
 }
+
+#[test]
+fn a_lost_device_is_an_error_and_no_panic() {
+    // A device of its own: the shared one must live on.
+    if gpu("a_lost_device_is_an_error_and_no_panic").is_none() {
+        return;
+    }
+    let own = gpu::Gpu::open(&gpu::Choice::Gpu).unwrap();
+    let scene = scene_of("SPHERE s 0 0 -5 2 2 2 1 1 1 1 0 0 0 1\nAMBIENT 1 1 1");
+    let settings = Settings::classic();
+    let effects = Effects::of(&scene, &settings);
+    let mut renderer = GpuRenderer::new(&own, &scene, &settings, &effects, Tier::Fast).unwrap();
+    let mut rgb = vec![0; 40 * 40 * 3];
+    renderer.rows(0, &mut rgb).unwrap();
+    own.destroy();
+    let error = renderer.rows(0, &mut rgb).unwrap_err();
+    assert!(matches!(error, gpu::Error::Lost(_)), "{error:?}");
+}

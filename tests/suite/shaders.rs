@@ -1,10 +1,11 @@
 //! The composed WGSL: every effect set is valid, and the structs are those of the host.
 
-use trueray::effects::EffectSet;
+use trueray::effects::{EffectSet, Effects, Request};
 use trueray::gpu::layout::{double, single};
-use trueray::gpu::{ENTRY_POINT, Module, SelfTest, Specialisation};
+use trueray::gpu::{ENTRY_POINT, Module, SelfTest, Specialisation, echo_layout};
 
 use trueray::precision::Tier;
+use trueray::settings::Settings;
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
@@ -139,4 +140,35 @@ fn error_free_transforms_are_exact_on_this_device() {
     // A device that fails is refused by the tier that needs them; the software drivers of the CI do not.
     assert_eq!((test.sum_mismatches, test.product_mismatches), (0, 0), "{}", gpu.info);
     gpu.require(Tier::Robust).unwrap();
+}
+
+/// The third lock: what the device reads is what the host packed, field by field.
+#[test]
+fn the_device_reads_every_field_where_the_host_wrote_it() {
+    let Some(gpu) = crate::support::gpu("the_device_reads_every_field_where_the_host_wrote_it") else { return };
+    // No two numbers are the same.
+    let scene = crate::support::scene_of(
+        "SPHERE a 11 12 -13 2 2 2 0.01 0.02 0.03 0.04 0.05 0.06 0.07 14\n\
+         SPHERE b 15 16 -17 1 4 8 0.11 0.12 0.13 0.14 0.15 0.16 0.17 18\n\
+         LIGHT l 21 22 23 0.21 0.22 0.23\nBACK 0.31 0.32 0.33\nAMBIENT 0.41 0.42 0.43",
+    );
+    let settings = Settings { max_depth: 5, ..Settings::classic() };
+    let effects = Effects::requested(&scene, &settings, &Request::Exactly(EffectSet::ALL));
+    let x = |i: f32| -1.0 + 2.0 * i / 40.0;
+    let expected: [&[f32]; 5] = [
+        &[0.31, 0.32, 0.33, 1.0, 0.41, 0.42, 0.43, 1.0 + 1e-6, 1e-3, 1e-3, 0.0, 0.0],
+        &[11.0, 12.0, -13.0, 1.0, 0.5, 0.5, 0.5, 0.01, 0.02, 0.03, 0.04, 2.0, 2.0, 2.0, 0.05, 0.06, 0.07, 14.0],
+        &[15.0, 16.0, -17.0, 1.0, 1.0, 0.25, 0.125, 0.11, 0.12, 0.13, 0.14, 1.0, 4.0, 8.0, 0.15, 0.16, 0.17, 18.0],
+        &[21.0, 22.0, 23.0, 0.21, 0.22, 0.23],
+        &[x(2.0), -x(2.0)],
+    ];
+    let bits = |values: &[f32]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+    let mut expected = expected.map(bits);
+    expected[0].extend([2, 1, 5, 0]);
+    for (sphere, index) in [(1, 0), (2, 1)] {
+        expected[sphere].insert(7, index);
+    }
+    for tier in Tier::ALL.into_iter().filter(|&tier| gpu.require(tier).is_ok()) {
+        assert_eq!(echo_layout(&gpu, &scene, &settings, &effects, tier).unwrap(), expected.concat(), "{tier}");
+    }
 }

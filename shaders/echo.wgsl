@@ -1,0 +1,56 @@
+// Every field that the host packs, read on the device and written back for the host to compare: the third lock on the layout.
+
+@group(0) @binding(21) var<storage, read_write> results: array<u32>;
+
+var<private> next: u32;
+
+fn echo(x: real) {
+    results[next] = bitcast<u32>(f32(x));
+    next++;
+}
+
+fn echo3(v: vec3r) {
+    echo(v.x);
+    echo(v.y);
+    echo(v.z);
+}
+
+fn echo_bits(x: u32) {
+    results[next] = x;
+    next++;
+}
+
+@compute @workgroup_size(1)
+fn echo_layout() {
+    echo3(params.background);
+    echo(params.near);
+    echo3(params.ambient);
+    echo(params.primary_t_min);
+    echo(params.shadow_t_min);
+    echo(params.reflection_t_min);
+    echo(params.quantize_bias);
+    echo(params.near_low);
+    echo_bits(params.sphere_count);
+    echo_bits(params.light_count);
+    echo_bits(params.max_depth);
+    echo_bits(params.zero);
+    for (var i = 0u; i < params.sphere_count; i++) {
+        echo3(shapes[i].center);
+        echo(shapes[i].radius);
+        echo3(shapes[i].inv_scale);
+        echo_bits(shapes[i].index);
+        echo3(materials[i].color);
+        echo(materials[i].ka);
+        echo3(materials[i].scale);
+        echo(materials[i].kd);
+        echo(materials[i].ks);
+        echo(materials[i].kr);
+        echo(materials[i].n);
+    }
+    for (var i = 0u; i < params.light_count; i++) {
+        echo3(lights[i].position);
+        echo3(lights[i].intensity);
+    }
+    echo(columns[params.sphere_count]);
+    echo(rows[params.sphere_count]);
+}

@@ -1,0 +1,43 @@
+//! What the device reads of a packed scene, for the test that locks the layout.
+
+use super::compute::{Job, Space};
+use super::device::Gpu;
+use super::error::Error;
+use super::pack::Packed;
+use super::shader::Module;
+use crate::effects::Effects;
+use crate::precision::Tier;
+use crate::scene::Scene;
+use crate::settings::Settings;
+
+/// Values before the spheres, of each sphere, of each light, and after the lights.
+const COUNTS: [usize; 4] = [16, 19, 6, 2];
+
+/// Packs `scene` and lets the device write back every field in the order of `shaders/echo.wgsl`: numbers as the bits of
+/// their nearest `f32`.
+pub fn echo_layout(
+    gpu: &Gpu,
+    scene: &Scene,
+    settings: &Settings,
+    effects: &Effects,
+    tier: Tier,
+) -> Result<Vec<u32>, Error> {
+    let packed = Packed::new(scene, settings, effects, tier);
+    let [head, sphere, light, tail] = COUNTS;
+    let job = Job {
+        what: "echoing the layout",
+        module: &Module::echo(tier),
+        inputs: &[
+            (0, Space::Uniform, &packed.params),
+            (1, Space::Storage, &packed.shapes),
+            (2, Space::Storage, &packed.materials),
+            (3, Space::Storage, &packed.lights),
+            (4, Space::Storage, &packed.columns),
+            (5, Space::Storage, &packed.rows),
+        ],
+        output: 21,
+        output_len: head + sphere * scene.spheres.len() + light * scene.lights.len() + tail,
+        groups: 1,
+    };
+    job.run(gpu)
+}
