@@ -25,7 +25,9 @@ fn ray_from(origin: Point, direction: vec3r) -> Ray {
 
 fn primary_ray(pixel: vec2<u32>) -> Ray {
     let high = vec3r(columns[pixel.x], rows[pixel.y], -params.near);
-    let low = vec3r(columns_low[pixel.x], rows_low[pixel.y], -params.near_low);
+    let column_low = columns[arrayLength(&columns) / 2u + pixel.x];
+    let row_low = rows[arrayLength(&rows) / 2u + pixel.y];
+    let low = vec3r(column_low, row_low, -params.near_low);
     return ray_with(Point(vec3r(), vec3r()), Pair3(high, low));
 }
 

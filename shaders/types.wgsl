@@ -53,7 +53,8 @@ struct Light {
 // Bindings 1 and 3, and their low parts 9 and 10, are in many.wgsl or few.wgsl: shapes and lights.
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(2) var<storage, read> materials: array<Material>;
-// x of each column and y of each row on the image plane.
+// x of each column and y of each row on the image plane; for the tiers that carry it, what rounding took from each follows in
+// the second half.
 @group(0) @binding(4) var<storage, read> columns: array<real>;
 @group(0) @binding(5) var<storage, read> rows: array<real>;
 // Top-left pixel of each tile that a sphere may cover.
@@ -62,9 +63,6 @@ struct Light {
 @group(0) @binding(7) var<storage, read_write> pixels: array<u32>;
 // With COUNT_RAYS, the shadow rays (low half) and reflection rays (high half) of each of those pixels.
 @group(0) @binding(8) var<storage, read_write> ray_counts: array<u32>;
-// What rounding took from columns and rows, for the tiers that carry it.
-@group(0) @binding(11) var<storage, read> columns_low: array<real>;
-@group(0) @binding(12) var<storage, read> rows_low: array<real>;
 
 var<private> shadow_rays: u32;
 var<private> reflection_rays: u32;

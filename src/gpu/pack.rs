@@ -22,11 +22,11 @@ pub(super) struct Packed {
     pub(super) materials: Vec<u8>,
     /// One per light.
     pub(super) lights: Vec<u8>,
-    /// x of each column on the image plane, on to the end of the last tile.
+    /// x of each column on the image plane, on to the end of the last tile, and then what rounding took from each.
     pub(super) columns: Vec<u8>,
-    /// y of each row on the image plane, on to the end of the last tile.
+    /// y of each row on the image plane, likewise.
     pub(super) rows: Vec<u8>,
-    /// What rounding took, for the tier that carries it.
+    /// What rounding took from spheres and lights, for the tier that carries it.
     pub(super) low: Option<Low>,
     pub(super) shape_size: usize,
     pub(super) light_size: usize,
@@ -37,8 +37,6 @@ pub(super) struct Packed {
 pub(super) struct Low {
     pub(super) shapes: Vec<u8>,
     pub(super) lights: Vec<u8>,
-    pub(super) columns: Vec<u8>,
-    pub(super) rows: Vec<u8>,
 }
 
 impl Packed {
@@ -78,7 +76,10 @@ fn pack<L: Layout>(scene: &Scene, settings: &Settings, effects: &Effects, with_l
     };
     // Without the effect the kernel leaves out the way into object space.
     let scale = |ellipsoid: &Ellipsoid| if on(Effect::Ellipsoids) { ellipsoid.scale } else { DVec3::ONE };
-    let reals = |values: &[f64]| bytes(values.iter().map(|&x| L::real(x)));
+    let reals = |values: &[f64]| {
+        let low = values.iter().filter(|_| with_low).map(|&x| L::residual(x));
+        bytes(values.iter().copied().chain(low).map(L::real))
+    };
     let low = || {
         let residual = |v: DVec3| DVec3::from_array(v.to_array().map(L::residual));
         let shape = |s: &ShapeValues| ShapeValues {
@@ -88,12 +89,9 @@ fn pack<L: Layout>(scene: &Scene, settings: &Settings, effects: &Effects, with_l
             index: s.index,
         };
         let light = |light: &Light| Light { position: residual(light.position), ..*light };
-        let residuals = |values: &[f64]| values.iter().map(|&x| L::residual(x)).collect::<Vec<_>>();
         Low {
             shapes: bytes(shapes.iter().map(|s| L::shape(&shape(s)))),
             lights: bytes(scene.lights.iter().map(|l| L::light(&light(l)))),
-            columns: reals(&residuals(&columns)),
-            rows: reals(&residuals(&rows)),
         }
     };
     Packed {

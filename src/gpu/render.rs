@@ -259,12 +259,7 @@ impl Kernel {
             (5, filled(&packed.rows, storage)),
         ];
         if let Some(low) = &packed.low {
-            inputs.extend([
-                (9, looped(&low.shapes, packed.shape_size)),
-                (10, looped(&low.lights, packed.light_size)),
-                (11, filled(&low.columns, storage)),
-                (12, filled(&low.rows, storage)),
-            ]);
+            inputs.extend([(9, looped(&low.shapes, packed.shape_size)), (10, looped(&low.lights, packed.light_size))]);
         }
         let own = [(6, &tiles), (7, &pixels.buffer), (8, &ray_counts.buffer)];
         let buffers = inputs.iter().map(|(binding, buffer)| (*binding, buffer)).chain(own);

@@ -110,8 +110,6 @@ fn bindings_are_numbered_without_gaps() {
             "ray_counts",
             "shapes_low",
             "lights_low",
-            "columns_low",
-            "rows_low",
         ];
         assert_eq!(names, expected);
         assert!(bindings.iter().enumerate().all(|(i, (binding, _))| i as u32 == *binding));
