@@ -8,8 +8,9 @@ use serde::Serialize;
 use super::failure::{Failure, OK, OUTPUT, SCENE};
 use super::input::Input;
 use super::options::PictureOptions;
-use super::render::explanation;
+use super::render::{explanation, precision_explanation};
 use crate::effects::Effects;
+use crate::precision::{self, Selection};
 use crate::scene::{Diagnostic, Scene, Severity};
 
 /// Arguments of `trueray check`.
@@ -71,6 +72,7 @@ struct Contents {
     refractive_spheres: usize,
     output: Option<String>,
     effects: Effects,
+    precision: Selection,
 }
 
 type DVec3Json = [f64; 3];
@@ -78,6 +80,7 @@ type DVec3Json = [f64; 3];
 impl Contents {
     fn new(scene: &Scene, picture: &PictureOptions) -> Self {
         let settings = picture.settings();
+        let effects = picture.effects(scene, &settings);
         let bounds = scene.spheres.iter().map(|s| (s.center - s.scale.abs(), s.center + s.scale.abs()));
         let extent = bounds.reduce(|(a, b), (c, d)| (a.min(c), b.max(d)));
         let axes = scene.spheres.iter().map(|s| (s.scale.abs().min_element(), s.scale.abs().max_element()));
@@ -90,7 +93,8 @@ impl Contents {
             semi_axes: axes.reduce(|(a, b), (c, d)| (a.min(c), b.max(d))).map(|(low, high)| [low, high]),
             refractive_spheres: scene.spheres.iter().filter(|sphere| sphere.kt != 0.0).count(),
             output: scene.output.clone(),
-            effects: picture.effects(scene, &settings),
+            precision: Selection::of(scene, &effects, precision::Request::default()),
+            effects,
         }
     }
 
@@ -107,7 +111,7 @@ impl Contents {
         if self.refractive_spheres > 0 {
             println!("  refraction   {} spheres with Kt > 0: cannot be rendered yet", self.refractive_spheres);
         }
-        print!("{}", explanation(name, &self.effects));
+        print!("{}{}", explanation(name, &self.effects), precision_explanation(&self.precision));
     }
 }
 

@@ -14,7 +14,6 @@ use crate::engine::{Backend, Engine, render_bands};
 use crate::film::{Format, PictureWriter, Target};
 use crate::gpu::Gpu;
 use crate::precision::Selection;
-use crate::settings::Settings;
 
 /// Arguments of `trueray render`.
 #[derive(Debug, clap::Args)]
@@ -136,8 +135,26 @@ fn render_one(args: &Args, mut loaded: Loaded, gpu: Option<&Gpu>, open_time: Dur
     if not_finite > 0 {
         eprintln!("trueray: {}: {not_finite} pixels are not finite (NaN or infinity)", loaded.name);
     }
-    let stats =
-        stats(&loaded, settings, effects, &engine, &target, gpu, not_finite, [open_time, write_time, start.elapsed()]);
+    let stats = Stats {
+        scene: loaded.name.clone(),
+        output: target.to_string(),
+        width: scene.width,
+        height: scene.height,
+        spheres: scene.spheres.len(),
+        lights: scene.lights.len(),
+        device: device_name(gpu),
+        settings,
+        effects,
+        precision: gpu.map(|_| selection),
+        rays: engine.rays(),
+        not_finite_pixels: not_finite,
+        parse_ms: ms(loaded.parse_time),
+        open_ms: ms(open_time),
+        times: engine.times(),
+        write_ms: ms(write_time),
+        // Parsing and opening overlap.
+        total_ms: ms(loaded.parse_time.max(open_time) + start.elapsed()),
+    };
     if !args.quiet {
         let Stats { width, height, output, device, total_ms, .. } = &stats;
         eprintln!("{output}: {width} × {height} on {device} in {total_ms:.0} ms");
@@ -183,37 +200,8 @@ pub(super) fn precision_explanation(selection: &Selection) -> String {
     format!("  precision    {tier}: {reason}\n  demand       {}\n", demand.summary())
 }
 
-#[allow(clippy::too_many_arguments, reason = "gathers what is known in one place")]
-fn stats(
-    loaded: &Loaded,
-    settings: Settings,
-    effects: Effects,
-    engine: &Engine,
-    target: &Target,
-    gpu: Option<&Gpu>,
-    not_finite_pixels: u64,
-    [open, write, render]: [Duration; 3],
-) -> Stats {
-    let ms = |duration: Duration| duration.as_secs_f64() * 1e3;
-    Stats {
-        scene: loaded.name.clone(),
-        output: target.to_string(),
-        width: loaded.scene.width,
-        height: loaded.scene.height,
-        spheres: loaded.scene.spheres.len(),
-        lights: loaded.scene.lights.len(),
-        device: device_name(gpu),
-        settings,
-        effects,
-        rays: engine.rays(),
-        not_finite_pixels,
-        parse_ms: ms(loaded.parse_time),
-        open_ms: ms(open),
-        times: engine.times(),
-        write_ms: ms(write),
-        // Parsing and opening overlap.
-        total_ms: ms(loaded.parse_time.max(open) + render),
-    }
+fn ms(duration: Duration) -> f64 {
+    duration.as_secs_f64() * 1e3
 }
 
 fn write_stats(path: &Path, stats: &[Stats]) -> Result<(), Failure> {

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::effects::Effects;
 use crate::engine::{Rays, Times};
+use crate::precision::Selection;
 use crate::settings::Settings;
 
 /// Everything worth knowing of one rendered picture.
@@ -20,6 +21,8 @@ pub(super) struct Stats {
     pub device: String,
     pub settings: Settings,
     pub effects: Effects,
+    /// The kernel's tier and why; the CPU reference knows no tiers.
+    pub precision: Option<Selection>,
     pub rays: Option<Rays>,
     pub not_finite_pixels: u64,
     /// Reading and parsing the scene.
@@ -44,6 +47,9 @@ impl Stats {
         row("scene", format!("{} spheres, {} lights", self.spheres, self.lights));
         row("device", self.device.clone());
         row("effects", format!("{} (depth {})", self.effects.set, self.effects.depth));
+        if let Some(Selection { tier, reason, .. }) = &self.precision {
+            row("precision", format!("{tier}: {reason}"));
+        }
         if let Some(Rays { primary, shadow, reflection }) = self.rays {
             row("rays", format!("{primary} primary, {shadow} shadow, {reflection} reflection"));
         }
