@@ -1,51 +1,20 @@
-// Error-free transforms in f32. Compilers may rewrite (a + b) - a to b and fuse or split products, so every result that must
-// stay as it is passes through barrier(); a self-test on the device decides whether that holds (src/gpu/selftest.rs).
+// Error-free transforms in f32. Compilers may rewrite (a + b) - a to b, factor sums of products and fuse a product into a sum,
+// so results that such a rule could reach pass through barrier(), which costs one instruction; parts cut off by a mask are out
+// of reach as they are. A self-test on the device decides whether it all holds (src/gpu/selftest.rs).
 
 // x, through bits that no compiler knows.
 fn barrier(x: f32) -> f32 {
     return bitcast<f32>(bitcast<u32>(x) ^ params.zero);
 }
 
-// hi + lo, |lo| at most half a unit in the last place of hi.
+fn barrier3(x: vec3<f32>) -> vec3<f32> {
+    return bitcast<vec3<f32>>(bitcast<vec3<u32>>(x) ^ vec3<u32>(params.zero));
+}
+
+// hi + lo, lo some units in the last place of hi at most.
 struct Pair {
     hi: f32,
     lo: f32,
-}
-
-// a + b without error (Knuth, The Art of Computer Programming, volume 2, 4.2.2, theorem B).
-fn two_sum(a: f32, b: f32) -> Pair {
-    let sum = barrier(a + b);
-    let b_part = barrier(sum - a);
-    let a_part = barrier(sum - b_part);
-    return Pair(sum, (a - a_part) + (b - b_part));
-}
-
-// a + b without error where |a| >= |b| (Dekker, "A floating-point technique for extending the available precision", 1971).
-fn fast_two_sum(a: f32, b: f32) -> Pair {
-    let sum = barrier(a + b);
-    return Pair(sum, b - barrier(sum - a));
-}
-
-// The upper 12 bits of x's significand; the rest has 12 more.
-fn upper_half(x: f32) -> f32 {
-    return bitcast<f32>((bitcast<u32>(x) & 0xfffff000u) ^ params.zero);
-}
-
-// a b without error, but for underflow (Dekker 1971, with the split by mask).
-fn two_product(a: f32, b: f32) -> Pair {
-    let product = barrier(a * b);
-    let a_hi = upper_half(a);
-    let b_hi = upper_half(b);
-    let a_lo = barrier(a - a_hi);
-    let b_lo = barrier(b - b_hi);
-    let error = barrier(barrier(barrier(a_hi * b_hi) - product) + barrier(a_hi * b_lo)) + barrier(a_lo * b_hi);
-    return Pair(product, error + a_lo * b_lo);
-}
-
-// The same for three components at once.
-
-fn barrier3(x: vec3<f32>) -> vec3<f32> {
-    return bitcast<vec3<f32>>(bitcast<vec3<u32>>(x) ^ vec3<u32>(params.zero));
 }
 
 struct Pair3 {
@@ -53,30 +22,56 @@ struct Pair3 {
     lo: vec3<f32>,
 }
 
+// a + b without error (Knuth, The Art of Computer Programming, volume 2, 4.2.2, theorem B).
+fn two_sum(a: f32, b: f32) -> Pair {
+    let sum = barrier(a + b);
+    let b_part = barrier(sum - a);
+    return Pair(sum, (a - (sum - b_part)) + (b - b_part));
+}
+
 fn two_sum3(a: vec3<f32>, b: vec3<f32>) -> Pair3 {
     let sum = barrier3(a + b);
     let b_part = barrier3(sum - a);
-    let a_part = barrier3(sum - b_part);
-    return Pair3(sum, (a - a_part) + (b - b_part));
+    return Pair3(sum, (a - (sum - b_part)) + (b - b_part));
+}
+
+// a + b without error where |a| >= |b| (Dekker, "A floating-point technique for extending the available precision", 1971).
+fn fast_two_sum(a: f32, b: f32) -> Pair {
+    let sum = barrier(a + b);
+    return Pair(sum, b - (sum - a));
 }
 
 fn fast_two_sum3(a: vec3<f32>, b: vec3<f32>) -> Pair3 {
     let sum = barrier3(a + b);
-    return Pair3(sum, b - barrier3(sum - a));
+    return Pair3(sum, b - (sum - a));
+}
+
+// The upper 12 bits of x's significand; the rest has 12 more.
+fn upper_half(x: f32) -> f32 {
+    return bitcast<f32>(bitcast<u32>(x) & 0xfffff000u);
 }
 
 fn upper_half3(x: vec3<f32>) -> vec3<f32> {
-    return bitcast<vec3<f32>>((bitcast<vec3<u32>>(x) & vec3<u32>(0xfffff000u)) ^ vec3<u32>(params.zero));
+    return bitcast<vec3<f32>>(bitcast<vec3<u32>>(x) & vec3<u32>(0xfffff000u));
+}
+
+// a b without error, but for underflow (Dekker 1971, with the split by mask).
+fn two_product(a: f32, b: f32) -> Pair {
+    let product = barrier(a * b);
+    let a_hi = upper_half(a);
+    let b_hi = upper_half(b);
+    let a_lo = a - a_hi;
+    let b_lo = b - b_hi;
+    return Pair(product, (((a_hi * b_hi - product) + a_hi * b_lo) + a_lo * b_hi) + a_lo * b_lo);
 }
 
 fn two_product3(a: vec3<f32>, b: vec3<f32>) -> Pair3 {
     let product = barrier3(a * b);
     let a_hi = upper_half3(a);
     let b_hi = upper_half3(b);
-    let a_lo = barrier3(a - a_hi);
-    let b_lo = barrier3(b - b_hi);
-    let error = barrier3(barrier3(barrier3(a_hi * b_hi) - product) + barrier3(a_hi * b_lo)) + barrier3(a_lo * b_hi);
-    return Pair3(product, error + a_lo * b_lo);
+    let a_lo = a - a_hi;
+    let b_lo = b - b_hi;
+    return Pair3(product, (((a_hi * b_hi - product) + a_hi * b_lo) + a_lo * b_hi) + a_lo * b_lo);
 }
 
 // Pairs: about 46 bits where the parts do not cancel.
@@ -88,7 +83,7 @@ fn pair_difference3(a: Pair3, b: Pair3) -> Pair3 {
 
 fn pair_product3(a: Pair3, b: Pair3) -> Pair3 {
     let product = two_product3(a.hi, b.hi);
-    return fast_two_sum3(product.hi, product.lo + (a.hi * b.lo + a.lo * b.hi));
+    return Pair3(product.hi, product.lo + (a.hi * b.lo + a.lo * b.hi));
 }
 
 fn pair_difference(a: Pair, b: Pair) -> Pair {
@@ -98,7 +93,7 @@ fn pair_difference(a: Pair, b: Pair) -> Pair {
 
 fn pair_product(a: Pair, b: Pair) -> Pair {
     let product = two_product(a.hi, b.hi);
-    return fast_two_sum(product.hi, product.lo + (a.hi * b.lo + a.lo * b.hi));
+    return Pair(product.hi, product.lo + (a.hi * b.lo + a.lo * b.hi));
 }
 
 // a . b as if in twice the precision (Ogita, Rump, Oishi, "Accurate sum and dot product", 2005, algorithm Dot2).
@@ -110,9 +105,11 @@ fn pair_dot(a: Pair3, b: Pair3) -> Pair {
     return fast_two_sum(xyz.hi, (xy.lo + xyz.lo) + low);
 }
 
-// a x b likewise.
-fn pair_cross(a: Pair3, b: Pair3) -> Pair3 {
-    let left = pair_product3(Pair3(a.hi.yzx, a.lo.yzx), Pair3(b.hi.zxy, b.lo.zxy));
-    let right = pair_product3(Pair3(a.hi.zxy, a.lo.zxy), Pair3(b.hi.yzx, b.lo.yzx));
-    return pair_difference3(left, right);
+// a x b likewise, rounded once.
+fn pair_cross(a: Pair3, b: Pair3) -> vec3<f32> {
+    let left = two_product3(a.hi.yzx, b.hi.zxy);
+    let right = two_product3(a.hi.zxy, b.hi.yzx);
+    let high = two_sum3(left.hi, -right.hi);
+    let mixed = (a.hi.yzx * b.lo.zxy - a.hi.zxy * b.lo.yzx) + (a.lo.yzx * b.hi.zxy - a.lo.zxy * b.hi.yzx);
+    return high.hi + (high.lo + ((left.lo - right.lo) + mixed));
 }
