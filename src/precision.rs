@@ -41,7 +41,7 @@ impl fmt::Display for Tier {
     }
 }
 
-/// The tier that the user asks for; `None` is `auto`.
+/// The tier that the user asks for; `None` is `auto`: the cheapest that covers the scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Request(pub Option<Tier>);
 
@@ -258,23 +258,28 @@ pub struct Selection {
 }
 
 impl Selection {
-    /// The tier asked for, or the lowest one whose promise covers `scene`.
-    pub fn of(scene: &Scene, effects: &Effects, request: Request) -> Self {
+    /// The tier asked for, or the first one of `ladder` whose promise covers `scene`; where none does, `double`.
+    pub fn of(scene: &Scene, effects: &Effects, request: Request, ladder: &[Tier]) -> Self {
         let demand = Demand::of(scene, effects);
         let excess = |tier| demand.beyond(tier, scene);
-        let (tier, reason) = match request.0 {
-            Some(tier) => {
-                let why = excess(tier).map_or_else(|| "covers the scene".into(), |why| format!("not covered: {why}"));
-                (tier, format!("asked for; {why}"))
-            }
-            None => match (excess(Tier::Fast), excess(Tier::Robust)) {
-                (None, _) => (Tier::Fast, "the lowest tier covers the scene".into()),
-                (Some(why), None) => (Tier::Robust, why),
-                (Some(_), Some(why)) => {
-                    let beyond = excess(Tier::Double).map_or_else(String::new, |why| format!("; even then {why}"));
-                    (Tier::Double, format!("{why}{beyond}"))
+        let (tier, reason) = if let Some(tier) = request.0 {
+            let why = excess(tier).map_or_else(|| "covers the scene".into(), |why| format!("not covered: {why}"));
+            (tier, format!("asked for; {why}"))
+        } else {
+            // Each tier that is passed over says why.
+            let mut passed_over = Vec::new();
+            let covering = ladder.iter().copied().find(|&tier| match excess(tier) {
+                None => true,
+                Some(why) => {
+                    passed_over.push(format!("not {tier}: {why}"));
+                    false
                 }
-            },
+            });
+            match covering {
+                Some(tier) if passed_over.is_empty() => (tier, "the cheapest tier covers the scene".into()),
+                Some(tier) => (tier, passed_over.join("; ")),
+                None => (Tier::Double, format!("none covers the scene; {}", passed_over.join("; "))),
+            }
         };
         let covered = excess(tier).is_none();
         Self { tier, reason, demand, covered }

@@ -10,7 +10,7 @@ use super::input::Input;
 use super::options::PictureOptions;
 use super::render::{explanation, precision_explanation};
 use crate::effects::Effects;
-use crate::precision::{self, Selection};
+use crate::precision::{self, Selection, Tier};
 use crate::scene::{Diagnostic, Scene, Severity};
 
 /// Arguments of `trueray check`.
@@ -93,7 +93,7 @@ impl Contents {
             semi_axes: axes.reduce(|(a, b), (c, d)| (a.min(c), b.max(d))).map(|(low, high)| [low, high]),
             refractive_spheres: scene.spheres.iter().filter(|sphere| sphere.kt != 0.0).count(),
             output: scene.output.clone(),
-            precision: Selection::of(scene, &effects, precision::Request::default()),
+            precision: Selection::of(scene, &effects, precision::Request::default(), &Tier::ALL),
             effects,
         }
     }

@@ -12,7 +12,7 @@ use crate::cpu::{Judge, Reference};
 use crate::engine::{Backend, Engine, render_picture};
 use crate::film::{Format, Leniency, Picture, Target, read_picture};
 use crate::gpu::{Choice, Gpu};
-use crate::precision::Selection;
+use crate::precision::Tier;
 
 /// Arguments of `trueray compare`.
 #[derive(Debug, clap::Args)]
@@ -174,9 +174,10 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Subje
     let scene = &loaded.scene;
     let settings = args.picture.settings();
     let effects = args.picture.effects(scene, &settings);
-    let selection = Selection::of(scene, &effects, args.device.precision);
-    let (name, picture, not_finite) = if let Some(path) = picture {
-        (path.display().to_string(), read(path, args.lenient)?, None)
+    let (name, picture, not_finite, tier) = if let Some(path) = picture {
+        // A picture of unknown origin is judged as that of the tier asked for, or else of plain f32.
+        let tier = args.device.precision.0.unwrap_or(Tier::Fast);
+        (path.display().to_string(), read(path, args.lenient)?, None, tier)
     } else {
         // Comparing the reference with itself would say nothing: auto means a device here.
         let choice = if args.device.device == Choice::Auto { &Choice::Gpu } else { &args.device.device };
@@ -184,9 +185,11 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Subje
             return Err(Failure::new(USAGE, "--device cpu would compare the reference with itself"));
         }
         let gpu = Gpu::open(choice)?;
-        let mut engine = Engine::new(Backend::Device(&gpu, selection.tier), scene, &settings, &effects)?;
+        let tier = args.device.selection(Some(&gpu), scene, &effects).tier;
+        let mut engine = Engine::new(Backend::Device(&gpu, tier), scene, &settings, &effects)?;
         let (rgb, not_finite) = render_picture(&mut engine, scene)?;
-        (format!("{}, {}", device_name(Some(&gpu)), selection.tier), self::picture(scene, rgb)?, Some(not_finite))
+        let name = format!("{}, {tier}", device_name(Some(&gpu)));
+        (name, self::picture(scene, rgb)?, Some(not_finite), tier)
     };
     let (rgb, _) = render_picture(&mut Engine::new(Backend::Reference, scene, &settings, &effects)?, scene)?;
     let expected = self::picture(scene, rgb)?;
@@ -196,7 +199,7 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Subje
         return Err(Failure::new(USAGE, message));
     }
     let reference = Reference::new(scene, &settings, &effects);
-    let explanation = Explanation::of(&picture, &expected, &reference, &Judge::of(selection.tier));
+    let explanation = Explanation::of(&picture, &expected, &reference, &Judge::of(tier));
     let names = [name, format!("reference of {}", loaded.name)];
     Ok(Subject { names, pictures: [picture, expected], explanation: Some(explanation), not_finite })
 }

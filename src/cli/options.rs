@@ -4,7 +4,7 @@ use clap::{Args, ValueEnum};
 
 use crate::effects::{Effects, Request};
 use crate::gpu::{Choice, Error, Gpu};
-use crate::precision;
+use crate::precision::{self, Selection, Tier};
 use crate::scene::Scene;
 use crate::settings::{Quantize, Sampling, Secondary, Settings, Specular};
 
@@ -88,7 +88,7 @@ pub(super) struct DeviceOptions {
     /// auto, cpu, gpu (never falls back), an index of `trueray devices`, part of a device's name or driver, or its PCI id
     #[arg(long, value_name = "DEVICE", default_value = "auto")]
     pub device: Choice,
-    /// Tier of the kernel: fast, robust, double, or auto for the lowest that covers the scene
+    /// Tier of the kernel: fast, robust, double, or auto for the cheapest that covers the scene
     #[arg(long, value_name = "TIER", default_value = "auto")]
     pub precision: precision::Request,
 }
@@ -108,6 +108,13 @@ impl DeviceOptions {
             },
             choice => Gpu::open(choice).map(Some),
         }
+    }
+}
+
+impl DeviceOptions {
+    /// The tier that renders `scene` on `gpu`, or would on hardware where there is none.
+    pub(super) fn selection(&self, gpu: Option<&Gpu>, scene: &Scene, effects: &Effects) -> Selection {
+        Selection::of(scene, effects, self.precision, gpu.map_or(&Tier::ALL, Gpu::ladder))
     }
 }
 

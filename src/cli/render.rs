@@ -106,7 +106,7 @@ fn render_one(args: &Args, mut loaded: Loaded, gpu: Option<&Gpu>, open_time: Dur
     let (target, format) = target(args, &loaded)?;
     let settings = args.picture.settings();
     let effects = args.picture.effects(scene, &settings);
-    let selection = Selection::of(scene, &effects, args.device.precision);
+    let selection = args.device.selection(gpu, scene, &effects);
     if args.explain || args.verbose {
         eprint!("{}{}", explanation(&loaded.name, &effects), precision_explanation(&selection));
     }

@@ -8,7 +8,6 @@ use super::failure::{Failure, OK, OUTPUT};
 use super::input::Loaded;
 use super::options::{DeviceOptions, PictureOptions, device_name};
 use crate::engine::Backend;
-use crate::precision::Selection;
 use crate::study::{EffectCost, effect_cost};
 
 /// Arguments of `trueray study`.
@@ -55,7 +54,7 @@ fn study(args: &Args) -> Result<(), Failure> {
         let scene = &loaded.scene;
         let settings = args.picture.settings();
         let effects = args.picture.effects(scene, &settings);
-        let selection = Selection::of(scene, &effects, args.device.precision);
+        let selection = args.device.selection(gpu.as_ref(), scene, &effects);
         let backend = gpu.as_ref().map_or(Backend::Reference, |gpu| Backend::Device(gpu, selection.tier));
         let effect_cost = effect_cost(backend, scene, &settings, args.runs as usize)?;
         let report = Report {

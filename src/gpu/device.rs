@@ -186,6 +186,16 @@ impl Gpu {
         Ok(Self { info, device, queue, mappable, failure })
     }
 
+    /// The tiers that `auto` chooses from, cheapest first. Software devices calculate in `f64` at little more than the price
+    /// of `f32`, far below that of error-free transforms; hardware has few `f64` units.
+    pub fn ladder(&self) -> &'static [Tier] {
+        match (self.info.kind, self.info.f64) {
+            ("software", true) => &[Tier::Fast, Tier::Double, Tier::Robust],
+            (_, true) => &[Tier::Fast, Tier::Robust, Tier::Double],
+            (_, false) => &[Tier::Fast, Tier::Robust],
+        }
+    }
+
     /// Gives the device up: whatever is still asked of it fails as lost.
     pub fn destroy(&self) {
         self.device.destroy();

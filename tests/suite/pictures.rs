@@ -207,7 +207,7 @@ fn auto_picks_a_tier_that_covers_the_scene() {
     for file in scene_files(&["hard"]) {
         let scene = scene(&file);
         let effects = Effects::of(&scene, &settings);
-        let selection = Selection::of(&scene, &effects, precision::Request(None));
+        let selection = Selection::of(&scene, &effects, precision::Request(None), gpu.ladder());
         if gpu.require(selection.tier).is_ok() {
             let (picture, _) = gpu_picture(&gpu, selection.tier, &scene, &settings, &effects);
             assert_explained(&short(&file), &picture, &scene, &settings, selection.tier);
@@ -216,7 +216,7 @@ fn auto_picks_a_tier_that_covers_the_scene() {
     let plain =
         scene_of("SPHERE a 0 0 -5 1 1 1 1 1 1 1 1 1 0 50\nSPHERE b 1 0 -4 1 2 1 1 1 1 1 1 1 1 50\nLIGHT l 5 5 5 1 1 1");
     let effects = Effects::of(&plain, &settings);
-    assert_eq!(Selection::of(&plain, &effects, precision::Request(None)).tier, Tier::Fast);
+    assert_eq!(Selection::of(&plain, &effects, precision::Request(None), gpu.ladder()).tier, Tier::Fast);
 }
 
 /// A picture that is wrong everywhere must stay unexplained nearly everywhere, or the margins would prove nothing.
