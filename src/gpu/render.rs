@@ -21,7 +21,7 @@ use crate::tiles::{Cover, TILE};
 /// Pixels of a tile.
 const TILE_PIXELS: usize = (TILE * TILE) as usize;
 /// A dispatch should take about this long: long enough to hide its overhead, far below what loses a device.
-const TARGET_DISPATCH: Duration = Duration::from_millis(40);
+const TARGET_DISPATCH: Duration = Duration::from_millis(25);
 /// Intersection tests of the first dispatch, before any is measured: some milliseconds on the slowest device seen.
 const FIRST_DISPATCH_TESTS: u64 = 4_000_000;
 /// Tiles of a dispatch at the most, for the size of the pixel buffer: 16 MiB.
@@ -212,9 +212,9 @@ impl<'a> GpuRenderer<'a> {
         Ok(())
     }
 
-    /// Sizes the next dispatch by the last one's time, growing by a factor of 8 at most.
+    /// Sizes the next dispatch by the last one's time, growing by a factor of 4 at most.
     fn set_pace(&mut self, tiles: usize, took: Duration) {
-        let factor = (TARGET_DISPATCH.as_secs_f64() / took.as_secs_f64().max(1e-9)).min(8.0);
+        let factor = (TARGET_DISPATCH.as_secs_f64() / took.as_secs_f64().max(1e-9)).min(4.0);
         self.tiles_per_dispatch = ((tiles as f64 * factor) as u32).clamp(1, MAX_DISPATCH_TILES);
     }
 }
