@@ -12,35 +12,42 @@ pub const TILE: u32 = 8;
 /// Conservative bounds of all spheres on the picture.
 #[derive(Debug, Clone)]
 pub struct Cover {
-    /// One per sphere that can be seen at all, in pixels: columns and rows, both ends included.
-    bounds: Vec<[u32; 4]>,
-    width: u32,
-    height: u32,
+    bounds: Vec<Bounds>,
+    camera: Camera,
+}
+
+/// Where one sphere can be on the picture.
+#[derive(Debug, Clone)]
+struct Bounds {
+    /// First and last column.
+    columns: [u32; 2],
+    /// First and last row.
+    rows: [u32; 2],
+    /// Its outline, where the sphere is large enough for the corners of the rectangle to matter.
+    outline: Option<Box<Outline>>,
 }
 
 impl Cover {
     /// Projects the spheres of `scene`; without `true_axes` their bounding spheres.
     pub fn new(scene: &Scene, camera: &Camera, true_axes: bool) -> Self {
-        let project = |e: &Ellipsoid| pixel_bounds(e, camera);
-        Self {
-            bounds: ellipsoids(scene, true_axes).iter().filter_map(project).collect(),
-            width: scene.width,
-            height: scene.height,
-        }
+        let project = |e: &Ellipsoid| Bounds::new(e, camera);
+        Self { bounds: ellipsoids(scene, true_axes).iter().filter_map(project).collect(), camera: *camera }
     }
 
     /// Top-left pixels of the covered tiles in rows `first` to `first + count`, in reading order; `first` is a multiple of
     /// [`TILE`].
     pub fn tiles(&self, first: u32, count: u32) -> Vec<[u32; 2]> {
-        let last = (first + count).min(self.height) - 1;
-        let across = self.width.div_ceil(TILE);
+        let last = (first + count).min(self.camera.height()) - 1;
+        let across = self.camera.width().div_ceil(TILE);
         let (top, down) = (first / TILE, last / TILE - first / TILE + 1);
         let mut covered = vec![false; across as usize * down as usize];
-        for &[left, right, upper, lower] in &self.bounds {
+        for bounds in &self.bounds {
+            let [upper, lower] = bounds.rows;
             if lower < first || upper > last {
                 continue;
             }
             for row in upper.max(first) / TILE..=lower.min(last) / TILE {
+                let [left, right] = bounds.columns_in(row, &self.camera);
                 let start = (row - top) as usize * across as usize;
                 covered[start + (left / TILE) as usize..=start + (right / TILE) as usize].fill(true);
             }
@@ -50,17 +57,84 @@ impl Cover {
     }
 }
 
-/// Columns and rows that the part of the ellipsoid beyond the image plane can cover.
-fn pixel_bounds(ellipsoid: &Ellipsoid, camera: &Camera) -> Option<[u32; 4]> {
-    let semi_axes = ellipsoid.scale * ellipsoid.radius;
-    let DVec3 { x, y, z } = ellipsoid.center;
-    let across = slopes(x, z, semi_axes.x, semi_axes.z, camera.near())?;
-    let down = slopes(y, z, semi_axes.y, semi_axes.z, camera.near())?;
-    let columns = across.map(|slope| camera.column_of(slope * camera.near()));
-    let rows = down.map(|slope| camera.row_of(slope * camera.near()));
-    let [left, right] = pixel_range(columns, camera.width())?;
-    let [upper, lower] = pixel_range(rows, camera.height())?;
-    Some([left, right, upper, lower])
+impl Bounds {
+    /// Columns and rows that the part of the ellipsoid beyond the image plane can cover.
+    fn new(ellipsoid: &Ellipsoid, camera: &Camera) -> Option<Self> {
+        let semi_axes = ellipsoid.scale * ellipsoid.radius;
+        let DVec3 { x, y, z } = ellipsoid.center;
+        let near = camera.near();
+        let across = slopes(x, z, semi_axes.x, semi_axes.z, near)?;
+        let down = slopes(y, z, semi_axes.y, semi_axes.z, near)?;
+        let columns = pixel_range(across.map(|slope| camera.column_of(slope * near)), camera.width())?;
+        let rows = pixel_range(down.map(|slope| camera.row_of(slope * near)), camera.height())?;
+        let is_large = rows[1] - rows[0] > 3 * TILE && columns[1] - columns[0] > 3 * TILE;
+        let whole = z + semi_axes.z < -near;
+        let outline = (is_large && whole).then(|| Box::new(Outline::new(ellipsoid, across)));
+        Some(Self { columns, rows, outline })
+    }
+
+    /// The columns that a row of tiles can see of it.
+    fn columns_in(&self, tile_row: u32, camera: &Camera) -> [u32; 2] {
+        let Some(outline) = &self.outline else {
+            return self.columns;
+        };
+        // The same margin as that of the rows.
+        let margin = 1.0 + f64::from(camera.height()) / 32768.0;
+        let rows = [f64::from(tile_row * TILE) - margin, f64::from((tile_row + 1) * TILE) + margin];
+        let slopes = outline.across(rows.map(|row| camera.y_at(row) / camera.near()));
+        let columns = slopes.map(|slopes| slopes.map(|slope| camera.column_of(slope * camera.near())));
+        match columns.and_then(|columns| pixel_range(columns, camera.width())) {
+            // Never beyond the rectangle, which rounding could make it, and never empty, which only rounding leaves it.
+            Some([left, right]) if left <= self.columns[1] && right >= self.columns[0] => {
+                [left.max(self.columns[0]), right.min(self.columns[1])]
+            }
+            _ => self.columns,
+        }
+    }
+}
+
+/// The ellipse that an ellipsoid wholly beyond the image plane covers, in slopes x/−z and y/−z: directions d = (x, y, −1)
+/// with (S'·d')² ≥ |d'|²(|S'|² − r²), primes in object space.
+#[derive(Debug, Clone, Copy)]
+struct Outline {
+    /// S'·d' is the scalar product of this and d.
+    projection: DVec3,
+    /// |d'|²(|S'|² − r²) is the scalar product of this and (x², y², 1).
+    tangent: DVec3,
+    /// The least and the greatest x, and the y of each.
+    extremes: [[f64; 2]; 2],
+}
+
+impl Outline {
+    /// Of `ellipsoid`, whose slopes lie `within`.
+    fn new(ellipsoid: &Ellipsoid, within: [f64; 2]) -> Self {
+        let center = ellipsoid.center * ellipsoid.inv_scale;
+        let squared = ellipsoid.inv_scale * ellipsoid.inv_scale;
+        let projection = center * ellipsoid.inv_scale;
+        let tangent = squared * (center.length_squared() - ellipsoid.radius * ellipsoid.radius);
+        let y_at = |x: f64| {
+            let p = projection;
+            -p.y * (p.x * x - p.z) / (p.y * p.y - tangent.y)
+        };
+        Self { projection, tangent, extremes: within.map(|x| [x, y_at(x)]) }
+    }
+
+    /// The x at which the outline has this y; none beyond it.
+    fn at(&self, y: f64) -> Option<[f64; 2]> {
+        let (p, t) = (self.projection, self.tangent);
+        let rest = p.y * y - p.z;
+        let (a, b, c) = (p.x * p.x - t.x, p.x * rest, rest * rest - t.y * y * y - t.z);
+        let discriminant = b * b - a * c;
+        (discriminant >= 0.0).then(|| [-1.0, 1.0].map(|sign| (-b + sign * discriminant.sqrt()) / a))
+    }
+
+    /// Least and greatest x between two y: the outline is convex, so they are at the ends or the extremes.
+    fn across(&self, ys: [f64; 2]) -> Option<[f64; 2]> {
+        let (low, high) = (ys[0].min(ys[1]), ys[0].max(ys[1]));
+        let inside = self.extremes.iter().filter(|[_, y]| (low..=high).contains(y)).map(|&[x, _]| x);
+        let xs = ys.iter().filter_map(|&y| self.at(y)).flatten().chain(inside);
+        xs.map(|x| [x, x]).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])
+    }
 }
 
 /// The pixels within one of a range, cut to the picture.

@@ -16,3 +16,4 @@ mod parse;
 mod pictures;
 mod shaders;
 mod support;
+mod tiles;
