@@ -50,6 +50,8 @@ pub struct GpuRenderer<'a> {
     gpu: &'a Gpu,
     cover: Cover,
     width: u32,
+    /// Samples of a pixel.
+    samples: u64,
     /// Number of tiles of the whole picture; no band has more.
     picture_tiles: u64,
     background: [u8; 3],
@@ -87,8 +89,10 @@ impl<'a> GpuRenderer<'a> {
         let (scene, settings) = (scene.as_ref(), &settings);
         let packed = Packed::new(scene, settings, effects, tier);
         check_fits(gpu, &packed)?;
-        let camera = Camera::new(scene, settings.sampling);
-        let tests_per_pixel = (scene.spheres.len() as u64 + 1)
+        let camera = Camera::new(scene, settings);
+        let samples = u64::from(settings.samples * settings.samples);
+        let tests_per_pixel = samples
+            * (scene.spheres.len() as u64 + 1)
             * (1 + scene.lights.len() as u64 * u64::from(effects.set.has(Effect::Shadows)))
             * (1 + u64::from(effects.depth));
         let first = FIRST_DISPATCH_TESTS / (tests_per_pixel * TILE_PIXELS as u64);
@@ -96,6 +100,7 @@ impl<'a> GpuRenderer<'a> {
             gpu,
             cover: Cover::new(scene, &camera, effects.set.has(Effect::Ellipsoids)),
             width: scene.width,
+            samples,
             picture_tiles: u64::from(scene.width.div_ceil(TILE)) * u64::from(scene.height.div_ceil(TILE)),
             background: settings.quantize.levels(scene.background),
             kernel: None,
@@ -118,7 +123,7 @@ impl<'a> GpuRenderer<'a> {
 
     /// Primary, shadow and reflection rays so far; `None` where they are not counted.
     pub fn rays(&self) -> Option<[u64; 3]> {
-        let primary = self.times.tiles * TILE_PIXELS as u64;
+        let primary = self.times.tiles * TILE_PIXELS as u64 * self.samples;
         self.kernel_inputs.specialisation.count_rays.then_some([primary, self.rays[0], self.rays[1]])
     }
 
