@@ -8,6 +8,7 @@ mod pipeline;
 mod readable;
 mod render;
 mod shader;
+mod timestamps;
 
 pub use device::{Choice, DeviceInfo, Gpu, list};
 pub use error::Error;
