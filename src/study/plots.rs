@@ -6,7 +6,7 @@ use super::contestant::Contestant;
 use super::measure::{Point, Series, Study};
 use super::number::{ppm, short, time};
 use super::sample::Sample;
-use super::svg::{Axis, Frame, drawing, px, spread, x_axis, y_axis};
+use super::svg::{Axis, Frame, Rect, drawing, place_labels, px, spread, x_axis, y_axis};
 use crate::precision::Tier;
 
 /// The colour class of a contestant.
@@ -32,7 +32,7 @@ pub(super) fn pareto(study: &Study) -> Markup {
     let (exact, inexact): (Vec<&Point>, Vec<&Point>) = points.iter().partition(|point| point.error.differing == 0);
     let lane = if exact.is_empty() { 0.0 } else { exact.len() as f64 * 24.0 + 16.0 };
     let above = if inexact.is_empty() { 0.0 } else { 230.0 };
-    let frame = Frame { left: 76.0, right: 560.0, top: 44.0, bottom: 44.0 + above + lane };
+    let frame = Frame { left: 76.0, right: 600.0, top: 44.0, bottom: 44.0 + above + lane };
     let times: Vec<_> = points.iter().map(|point| &point.wall).collect();
     let x = Axis::logarithmic(extent(&times).into_iter(), frame.left + 12.0, frame.right);
     let edge = frame.top + above;
@@ -41,18 +41,24 @@ pub(super) fn pareto(study: &Study) -> Markup {
         edge - if exact.is_empty() { 0.0 } else { 12.0 },
         frame.top,
     );
-    let mut places: Vec<(&Point, f64, f64)> = Vec::new();
-    let heights: Vec<_> = inexact.iter().map(|point| y.place(ppm(point.error.differing, pixels))).collect();
-    let labels = spread(&heights, 18.0, frame.top + 6.0, edge - 6.0);
-    for ((point, height), label) in inexact.iter().zip(&heights).zip(&labels) {
-        places.push((point, *height, *label));
-    }
+    let mut places: Vec<(&Point, f64)> =
+        inexact.iter().map(|point| (*point, y.place(ppm(point.error.differing, pixels)))).collect();
     let mut by_time = exact.clone();
     by_time.sort_by(|a, b| a.wall.median().total_cmp(&b.wall.median()));
-    for (index, point) in by_time.into_iter().enumerate() {
-        let height = edge + 20.0 + index as f64 * 24.0;
-        places.push((point, height, height));
-    }
+    places.extend(by_time.into_iter().enumerate().map(|(index, point)| (point, edge + 20.0 + index as f64 * 24.0)));
+    let note = |point: &Point| {
+        let count = point.error.differing;
+        let count = if count > 0 { format!(", {count} px") } else { String::new() };
+        format!("{}{count}", time(point.wall.median()))
+    };
+    let mark = |(point, height): &(&Point, f64)| {
+        Rect([x.place(point.wall.min()) - 7.0, height - 7.0, x.place(point.wall.max()) + 7.0, height + 7.0])
+    };
+    let marks: Vec<_> = places.iter().map(mark).collect();
+    // Letters are about 7 px wide.
+    let width = |point: &Point| (point.contestant.name().len() + note(point).chars().count() + 1) as f64 * 7.0;
+    let widths: Vec<_> = places.iter().map(|(point, _)| width(point)).collect();
+    let labels = place_labels(&marks, &widths, Rect([frame.left + 2.0, frame.top, 756.0, frame.bottom]));
     let content = html! {
         @if !exact.is_empty() {
             rect.lane x=(px(frame.left)) y=(px(edge)) width=(px(frame.right - frame.left)) height=(px(lane)) {}
@@ -61,19 +67,11 @@ pub(super) fn pareto(study: &Study) -> Markup {
         (x_axis(&frame, &x.ticks(), "time of a picture in ms (logarithmic); left is faster"))
         (y_axis(&frame, &if inexact.is_empty() { Vec::new() } else { y.ticks() },
             "pixels in a million that differ from the CPU f64 reference; lower is better"))
-        @for (point, height, label) in &places {
-            @let here = x.place(point.wall.median());
-            @let end = x.place(point.wall.max()).max(here + 8.0);
+        @for ((point, height), (left, base)) in places.iter().zip(&labels) {
             g class=(class(point.contestant)) {
                 line.bar x1=(px(x.place(point.wall.min()))) x2=(px(x.place(point.wall.max()))) y1=(px(*height)) y2=(px(*height)) {}
-                circle.dot cx=(px(here)) cy=(px(*height)) r="6" {}
-                @if (label - height).abs() > 3.0 {
-                    line.leader x1=(px(end + 1.0)) x2=(px(end + 9.0)) y1=(px(*height)) y2=(px(*label)) {}
-                }
-                text.name x=(px(end + 12.0)) y=(px(label + 4.5)) {
-                    (point.contestant.name())
-                    tspan.note { "  " (time(point.wall.median())) @if point.error.differing > 0 { ", " (point.error.differing) " px" } }
-                }
+                circle.dot cx=(px(x.place(point.wall.median()))) cy=(px(*height)) r="6" {}
+                text.name x=(px(*left)) y=(px(*base)) { (point.contestant.name()) tspan.note dx="6" { (note(point)) } }
             }
         }
     };

@@ -156,3 +156,46 @@ pub(super) fn spread(places: &[f64], gap: f64, low: f64, high: f64) -> Vec<f64> 
     }
     moved
 }
+
+/// A rectangle: left, top, right, bottom.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Rect(pub(super) [f64; 4]);
+
+impl Rect {
+    fn overlaps(&self, other: &Self) -> bool {
+        let (Self([a, b, c, d]), Self([e, f, g, h])) = (self, other);
+        a < g && e < c && b < h && f < d
+    }
+
+    fn is_within(&self, other: &Self) -> bool {
+        let (Self([a, b, c, d]), Self([e, f, g, h])) = (self, other);
+        a >= e && b >= f && c <= g && d <= h
+    }
+}
+
+/// Where the labels of `marks` go, `widths` wide, each as left end and base line: beside, above or below the mark, wherever
+/// it meets no mark and no label before it and stays within `bounds`.
+pub(super) fn place_labels(marks: &[Rect], widths: &[f64], bounds: Rect) -> Vec<(f64, f64)> {
+    const HEIGHT: f64 = 17.0;
+    let mut taken = marks.to_vec();
+    let mut places = Vec::new();
+    for (Rect([left, top, right, bottom]), width) in marks.iter().zip(widths) {
+        let middle = f64::midpoint(*top, *bottom) - HEIGHT / 2.0;
+        let start = f64::midpoint(*left, *right) - width / 2.0;
+        let mut candidates = vec![(right + 5.0, middle), (left - 5.0 - width, middle)];
+        for step in 0..8 {
+            let far = f64::from(step) * (HEIGHT + 2.0);
+            for x in [start, *right - width + 20.0, *left - 20.0] {
+                candidates.extend([(x, top - HEIGHT - 1.0 - far), (x, bottom + 1.0 + far)]);
+            }
+        }
+        let label = |(x, y): (f64, f64)| Rect([x, y, x + width, y + HEIGHT]);
+        let free = |place: &(f64, f64)| {
+            label(*place).is_within(&bounds) && !taken.iter().any(|other| label(*place).overlaps(other))
+        };
+        let (x, y) = candidates.iter().copied().find(free).unwrap_or(candidates[0]);
+        taken.push(label((x, y)));
+        places.push((x, y + 13.0));
+    }
+    places
+}
