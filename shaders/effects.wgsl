@@ -16,5 +16,8 @@ override SKIP_SELF: bool = false;
 // The specular term is (N.H)^n instead of (R.V)^n.
 override BLINN: bool = false;
 
+// Side of the grid of samples in each pixel.
+override SAMPLES: u32 = 1u;
+
 // Each pixel also says how many rays it took.
 override COUNT_RAYS: bool = false;

@@ -53,7 +53,7 @@ struct Light {
 // Bindings 1 and 3, and their low parts 9 and 10, are in many.wgsl or few.wgsl: shapes and lights.
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(2) var<storage, read> materials: array<Material>;
-// x of each column and y of each row on the image plane; for the tiers that carry it, what rounding took from each follows in
+// x of each column and y of each row of samples on the image plane; for the tiers that carry it, what rounding took from each follows in
 // the second half.
 @group(0) @binding(4) var<storage, read> columns: array<real>;
 @group(0) @binding(5) var<storage, read> rows: array<real>;

@@ -1,35 +1,49 @@
 //! The eye at the origin and its window: the one place that turns a pixel into a ray, for CPU and GPU alike.
 
 use crate::scene::{Scene, Window};
-use crate::settings::Sampling;
+use crate::settings::Settings;
 
 /// A primary ray counts hits beyond this τ: what lies before the image plane, or just touches it, is cut away.
 pub const NEAR_T_MIN: f64 = 1.0 + 1e-6;
 
-/// Positions of all sample columns and rows on the image plane. The ray of pixel (i, j) is τ·(`x(i)`, `y(j)`, −`near`),
-/// not normalised: τ = 1 lies on the image plane.
+/// Positions of all sample columns and rows on the image plane. The ray of the sample in column i and row j is
+/// τ·(`x(i)`, `y(j)`, −`near`), not normalised: τ = 1 lies on the image plane.
+///
+/// Each pixel is cut into k × k equal cells, k being [`Settings::samples`], and each cell has one sample where the
+/// convention places it: with centre sampling in the middle of the cell, at offsets (s + ½)/k from the pixel's left and
+/// top, with corner sampling at the cell's corner, at offsets s/k, for s in 0..k. Sample column i lies in pixel column
+/// ⌊i/k⌋, and k = 1 is one sample a pixel at the convention's own offset. The samples of corner conventions have their mean
+/// (k − 1)/2k of a pixel away from the corner, so their picture moves by up to half a pixel as k grows; that of centre
+/// sampling does not move.
 #[derive(Debug, Clone, Copy)]
 pub struct Camera {
     window: Window,
     width: u32,
     height: u32,
     offset: (f64, f64),
+    samples: u32,
 }
 
 impl Camera {
-    /// The camera of `scene` with its samples placed by `sampling`.
-    pub fn new(scene: &Scene, sampling: Sampling) -> Self {
-        Self { window: scene.window, width: scene.width, height: scene.height, offset: sampling.offset() }
+    /// The camera of `scene` with its samples placed by `settings`.
+    pub fn new(scene: &Scene, settings: &Settings) -> Self {
+        Self {
+            window: scene.window,
+            width: scene.width,
+            height: scene.height,
+            offset: settings.sampling.offset(),
+            samples: settings.samples,
+        }
     }
 
-    /// x on the image plane of the sample in column `i` (0 = left).
+    /// x on the image plane of sample column `i` (0 = left).
     pub fn x(&self, i: u32) -> f64 {
-        self.x_at(f64::from(i) + self.offset.0)
+        self.x_at((f64::from(i) + self.offset.0) / f64::from(self.samples))
     }
 
-    /// y on the image plane of the sample in row `j` (0 = top).
+    /// y on the image plane of sample row `j` (0 = top).
     pub fn y(&self, j: u32) -> f64 {
-        self.y_at(f64::from(j) + self.offset.1)
+        self.y_at((f64::from(j) + self.offset.1) / f64::from(self.samples))
     }
 
     /// x on the image plane at `i` pixel widths from the left edge.
@@ -50,6 +64,11 @@ impl Camera {
     /// Row coordinate (in pixel heights from the top edge) of `y` on the image plane: the inverse of [`Camera::y_at`].
     pub fn row_of(&self, y: f64) -> f64 {
         (self.window.top - y) / (self.window.top - self.window.bottom) * f64::from(self.height)
+    }
+
+    /// Side k of the grid of samples in a pixel.
+    pub fn samples(&self) -> u32 {
+        self.samples
     }
 
     /// Distance of the image plane.

@@ -102,6 +102,22 @@ impl<'a> Engine<'a> {
         }
     }
 
+    /// Reads the device's own clock from now on; returns whether there is one.
+    pub fn time_on_device(&mut self) -> bool {
+        match self {
+            Self::Cpu(_) => false,
+            Self::Gpu(gpu, _) => gpu.time_on_device(),
+        }
+    }
+
+    /// Time of all dispatches by the device's own clock, in ms; 0 where it is not asked or has none.
+    pub fn on_device_ms(&self) -> f64 {
+        match self {
+            Self::Cpu(_) => 0.0,
+            Self::Gpu(gpu, _) => ms(gpu.times().on_device),
+        }
+    }
+
     /// Renders whole rows from row `first` on (a multiple of [`TILE`]); returns how many pixels are not finite.
     pub fn rows(&mut self, first: u32, rgb: &mut [u8]) -> Result<u64, gpu::Error> {
         match self {

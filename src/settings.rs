@@ -89,11 +89,15 @@ pub struct Settings {
     pub specular: Specular,
     /// Greatest number of reflection bounces, 0 to [`Settings::MAX_DEPTH`].
     pub max_depth: u32,
+    /// Side k of the regular grid of k × k samples in each pixel, 1 to [`Settings::MAX_SAMPLES`]; the pixel is their mean.
+    pub samples: u32,
 }
 
 impl Settings {
     /// The greatest accepted `max_depth`; beyond some tens of bounces nothing is left of a ray's weight or accuracy.
     pub const MAX_DEPTH: u32 = 1000;
+    /// The greatest accepted `samples`: 256 samples a pixel.
+    pub const MAX_SAMPLES: u32 = 16;
 
     /// The convention that the official pictures pin.
     pub fn classic() -> Self {
@@ -103,6 +107,7 @@ impl Settings {
             secondary: Secondary::Epsilon { shadow: 1e-3, reflection: 1e-3 },
             specular: Specular::Phong,
             max_depth: 3,
+            samples: 1,
         }
     }
 

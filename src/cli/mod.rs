@@ -44,7 +44,7 @@ enum Command {
     Compare(compare::Args),
     /// Check scene files and summarise them, without rendering
     Check(check::Args),
-    /// Measure what each effect costs in time on a scene
+    /// Measure what accuracy and effects cost in time on a scene
     Study(study::Args),
     /// List the Vulkan devices
     Devices(devices::Args),

@@ -29,6 +29,9 @@ pub(super) struct PictureOptions {
     /// Greatest number of reflection bounces
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(0..=i64::from(Settings::MAX_DEPTH)))]
     max_depth: u32,
+    /// Samples of each pixel, on a regular grid: a square number up to 256
+    #[arg(long, value_name = "N", default_value = "1", value_parser = samples_side)]
+    spp: u32,
     /// Picture size in place of the scene's RES
     #[arg(long, value_name = "WxH", value_parser = resolution)]
     res: Option<(u32, u32)>,
@@ -66,6 +69,7 @@ impl PictureOptions {
             };
         }
         settings.max_depth = self.max_depth;
+        settings.samples = self.spp;
         settings
     }
 
@@ -156,6 +160,15 @@ fn secondary(text: &str) -> Result<Secondary, String> {
         Ok(epsilon) if (0.0..1.0).contains(&epsilon) => Ok(Secondary::Epsilon { shadow: epsilon, reflection: epsilon }),
         _ => Err("expected a number from 0 to below 1, or `skip-self`".into()),
     }
+}
+
+/// The side of the grid of so many samples.
+pub(super) fn samples_side(text: &str) -> Result<u32, String> {
+    let greatest = Settings::MAX_SAMPLES * Settings::MAX_SAMPLES;
+    let wrong = || format!("expected a square number from 1 to {greatest}: 1, 4, 9, 16, 25, …");
+    let count: u32 = text.parse().map_err(|_| wrong())?;
+    let side = count.isqrt();
+    if (1..=greatest).contains(&count) && side * side == count { Ok(side) } else { Err(wrong()) }
 }
 
 fn resolution(text: &str) -> Result<(u32, u32), String> {

@@ -1,14 +1,13 @@
 //! `trueray study`.
 
-use std::path::PathBuf;
-
-use serde::Serialize;
+use std::path::{Path, PathBuf};
 
 use super::failure::{Failure, OK, OUTPUT};
 use super::input::Loaded;
-use super::options::{DeviceOptions, PictureOptions, device_name};
-use crate::engine::Backend;
-use crate::study::{EffectCost, effect_cost};
+use super::options::{DeviceOptions, PictureOptions, samples_side};
+use crate::film::Target;
+use crate::settings::Settings;
+use crate::study::{Error, Plan, Study, Subject, csv, html};
 
 /// Arguments of `trueray study`.
 #[derive(Debug, clap::Args)]
@@ -16,26 +15,31 @@ pub(super) struct Args {
     /// Scene files; `-` is standard input
     #[arg(required = true, value_name = "SCENE")]
     scenes: Vec<PathBuf>,
-    /// Counted runs of each variant, after one warm-up
-    #[arg(long, value_name = "N", default_value_t = 9, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    /// Counted runs of each point, after one warm-up
+    #[arg(long, value_name = "N", default_value_t = 7, value_parser = clap::value_parser!(u32).range(1..=1000))]
     runs: u32,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    /// Time for the counted runs of one series, in seconds; pictures that take longer get fewer runs, but at least 3
+    #[arg(long, value_name = "S", default_value_t = 15.0, value_parser = seconds)]
+    seconds: f64,
+    /// Reflection depths to compare; without this all from 0 to the greatest that can matter
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(0..=i64::from(Settings::MAX_DEPTH)))]
+    depths: Vec<u32>,
+    /// Samples per pixel to compare: square numbers
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "1,4,16", value_parser = samples_side)]
+    spp_list: Vec<u32>,
+    /// Write a report with plots, one HTML file that needs nothing else
+    #[arg(long, value_name = "FILE")]
+    report: Option<PathBuf>,
+    /// Write every point and run as CSV; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Write everything as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
     #[command(flatten)]
     picture: PictureOptions,
     #[command(flatten)]
     device: DeviceOptions,
-}
-
-/// What `--json` prints of a scene.
-#[derive(Debug, Serialize)]
-struct Report {
-    scene: String,
-    width: u32,
-    height: u32,
-    device: String,
-    effect_cost: EffectCost,
 }
 
 pub(super) fn run(args: &Args) -> u8 {
@@ -46,32 +50,105 @@ pub(super) fn run(args: &Args) -> u8 {
 }
 
 fn study(args: &Args) -> Result<(), Failure> {
+    // What cannot be written should be known before minutes of measuring.
+    for path in [&args.report, &args.csv, &args.json].into_iter().flatten() {
+        check_folder(path)?;
+    }
     let gpu = args.device.open()?;
-    let mut reports = Vec::new();
+    let distinct = |list: &[u32]| {
+        let mut list = list.to_vec();
+        list.sort_unstable();
+        list.dedup();
+        list
+    };
+    let plan = Plan {
+        runs: args.runs as usize,
+        seconds: args.seconds,
+        depths: distinct(&args.depths),
+        sides: distinct(&args.spp_list),
+    };
+    let table_on_stdout = ![&args.csv, &args.json].into_iter().flatten().any(|path| path == Path::new("-"));
+    let mut studies = Vec::new();
     for path in &args.scenes {
         let mut loaded = Loaded::read(path, false)?;
         args.picture.resize(&mut loaded.scene);
         let scene = &loaded.scene;
         let settings = args.picture.settings();
-        let effects = args.picture.effects(scene, &settings);
-        let selection = args.device.selection(gpu.as_ref(), scene, &effects);
-        let backend = gpu.as_ref().map_or(Backend::Reference, |gpu| Backend::Device(gpu, selection.tier));
-        let effect_cost = effect_cost(backend, scene, &settings, args.runs as usize)?;
-        let report = Report {
-            scene: loaded.name,
-            width: scene.width,
-            height: scene.height,
-            device: device_name(gpu.as_ref()),
-            effect_cost,
+        let effects = |settings: &Settings| args.picture.effects(scene, settings);
+        let selection = args.device.selection(gpu.as_ref(), scene, &effects(&settings));
+        let subject = Subject {
+            name: &loaded.name,
+            scene,
+            settings: &settings,
+            effects: &effects,
+            gpu: gpu.as_ref(),
+            selection: &selection,
         };
-        if !args.json {
-            println!("{}: {} × {} on {}", report.scene, report.width, report.height, report.device);
-            print!("{}", report.effect_cost.report());
+        let study = crate::study::study(&subject, &plan)?;
+        if table_on_stdout {
+            print!("{}{}", if studies.is_empty() { "" } else { "\n" }, study.report());
         }
-        reports.push(report);
+        studies.push(study);
     }
-    if args.json {
-        println!("{}", serde_json::to_string_pretty(&reports).map_err(|e| Failure::new(OUTPUT, e.to_string()))?);
+    write(args, &studies)
+}
+
+fn write(args: &Args, studies: &[Study]) -> Result<(), Failure> {
+    if let Some(path) = &args.report {
+        save(path, &html(studies, &command()))?;
+    }
+    if let Some(path) = &args.csv {
+        save(path, &csv(studies))?;
+    }
+    if let Some(path) = &args.json {
+        let document = serde_json::json!({ "command": command(), "studies": studies });
+        let text = serde_json::to_string_pretty(&document).map_err(|error| Failure::new(OUTPUT, error.to_string()))?;
+        save(path, &(text + "\n"))?;
     }
     Ok(())
+}
+
+/// The command line as it was given, with the program's plain name; arguments with blanks or quotes are quoted.
+fn command() -> String {
+    let quoted = |argument: String| {
+        let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,+:@%".contains(c);
+        if !argument.is_empty() && argument.chars().all(plain) {
+            argument
+        } else {
+            format!("'{}'", argument.replace('\'', "'\\''"))
+        }
+    };
+    let arguments = std::env::args_os().skip(1).map(|argument| quoted(argument.to_string_lossy().into_owned()));
+    std::iter::once("trueray".to_owned()).chain(arguments).collect::<Vec<_>>().join(" ")
+}
+
+fn check_folder(path: &Path) -> Result<(), Failure> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if path.is_dir() || !folder.is_dir() {
+        let what =
+            if path.is_dir() { "that is a folder".into() } else { format!("there is no folder {}", folder.display()) };
+        return Err(Failure::new(OUTPUT, format!("cannot write {}: {what}", path.display())));
+    }
+    Ok(())
+}
+
+/// Writes a text to a file, complete or not at all, or to standard output.
+fn save(path: &Path, text: &str) -> Result<(), Failure> {
+    Ok(crate::film::save_text(&Target::from_argument(path.as_os_str()), text)?)
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if seconds.is_finite() && seconds >= 0.0 => Ok(seconds),
+        _ => Err("expected a number of seconds, 0 or more".into()),
+    }
+}
+
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
+        match error {
+            Error::Device(error) => error.into(),
+            Error::Picture(error) => Self::new(super::failure::SCENE, error.to_string()),
+        }
+    }
 }

@@ -77,15 +77,26 @@ impl Judge {
     }
 
     /// The decision that explains `level`, another renderer's 8-bit value of pixel (column `i`, row `j`) that differs from
-    /// the reference's: the first on the pixel's path that comes within its margin. `None`: the pixel is unexplained.
+    /// the reference's: the first on the paths of the pixel's samples that comes within its margin. `None`: the pixel is unexplained.
     pub fn explain(&self, reference: &Reference<f64>, i: u32, j: u32, level: [u8; 3]) -> Option<Decision> {
-        let mut cone = Cone::new(self);
-        let color = trace(&reference.world, reference.primary_ray(i, j), &mut cone).to_f64();
-        let error = cone.color + color.abs() * (STEPS * self.shading);
+        let mut decision = None;
+        let (mut errors, mut magnitudes, mut count) = (DVec3::ZERO, DVec3::ZERO, 0.0);
+        for ray in reference.sample_rays(i, j) {
+            let mut cone = Cone::new(self);
+            let color = trace(&reference.world, ray, &mut cone).to_f64();
+            errors += cone.color + color.abs() * (STEPS * self.shading);
+            magnitudes += color.abs();
+            count += 1.0;
+            decision = decision.or(cone.decision);
+        }
+        let color = reference.color(i, j);
+        // Each addition rounds a sum that is no greater than that of all magnitudes, twice: the differences to the first.
+        let summation = if count > 1.0 { magnitudes * (2.0 * self.shading) } else { DVec3::ZERO };
+        let error = errors / count + summation;
         let low = reference.quantize.levels(color - error);
         let high = reference.quantize.levels(color + error);
         let within_step = (0..3).all(|c| (low[c]..=high[c]).contains(&level[c]));
-        cone.decision.or(within_step.then_some(Decision::QuantisationStep))
+        decision.or(within_step.then_some(Decision::QuantisationStep))
     }
 }
 

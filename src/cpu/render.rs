@@ -29,11 +29,12 @@ impl<T: Real> Reference<T> {
         let (scene, settings) = in_range(scene, settings);
         Self {
             world: World::new(&scene, &settings, effects),
-            camera: Camera::new(&scene, settings.sampling),
+            camera: Camera::new(&scene, &settings),
             quantize: settings.quantize,
         }
     }
 
+    /// The ray of the sample in sample column `i` and sample row `j`.
     pub(super) fn primary_ray(&self, i: u32, j: u32) -> Ray<T> {
         let direction = DVec3::new(self.camera.x(i), self.camera.y(j), -self.camera.near());
         Ray { origin: Vec3::ZERO, direction: Vec3::from_f64(direction) }
@@ -41,7 +42,30 @@ impl<T: Real> Reference<T> {
 
     /// The unclamped colour of pixel (column `i`, row `j`).
     pub fn color(&self, i: u32, j: u32) -> DVec3 {
-        trace(&self.world, self.primary_ray(i, j), &mut ()).to_f64()
+        self.pixel_color(i, j, &mut ()).to_f64()
+    }
+
+    /// The colour of a pixel: the mean over its samples, row by row, unclamped; read it beside `shaders/main.wgsl`. Taken
+    /// from differences to the first sample, it is exact where all are equal.
+    fn pixel_color<W: Witness<T>>(&self, i: u32, j: u32, witness: &mut W) -> Vec3<T> {
+        let mut samples = self.sample_rays(i, j).map(|ray| trace(&self.world, ray, witness));
+        let Some(first) = samples.next() else { return Vec3::ZERO };
+        let mut excess = Vec3::ZERO;
+        for color in samples {
+            excess += color - first;
+        }
+        let side = self.camera.samples();
+        if side == 1 {
+            return first;
+        }
+        let count = T::from_f64(f64::from(side * side));
+        first + Vec3::new(excess.x / count, excess.y / count, excess.z / count)
+    }
+
+    /// The rays of all samples of pixel (column `i`, row `j`), row by row.
+    pub(super) fn sample_rays(&self, i: u32, j: u32) -> impl Iterator<Item = Ray<T>> {
+        let side = self.camera.samples();
+        (0..side * side).map(move |s| self.primary_ray(i * side + s % side, j * side + s / side))
     }
 
     /// Renders whole rows from row `first` on into `rgb`, 3 bytes a pixel, in parallel.
@@ -49,13 +73,14 @@ impl<T: Real> Reference<T> {
         // A few hundred pixels a task balance the load and keep the cost of a task invisible.
         const CHUNK: usize = 256;
         let width = self.camera.width() as usize;
+        let samples = u64::from(self.camera.samples() * self.camera.samples());
         let chunk = |(chunk, pixels): (usize, &mut [u8])| {
             let mut tally = Tally::default();
             for (k, pixel) in pixels.as_chunks_mut::<3>().0.iter_mut().enumerate() {
                 let index = chunk * CHUNK + k;
-                let ray = self.primary_ray((index % width) as u32, first + (index / width) as u32);
-                let color = trace(&self.world, ray, &mut tally).to_f64();
-                tally.primary += 1;
+                let (i, j) = ((index % width) as u32, first + (index / width) as u32);
+                let color = self.pixel_color(i, j, &mut tally).to_f64();
+                tally.primary += samples;
                 tally.not_finite += u64::from(!color.is_finite());
                 *pixel = self.quantize.levels(color);
             }

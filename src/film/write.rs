@@ -153,6 +153,21 @@ impl fmt::Debug for PictureWriter {
     }
 }
 
+/// Writes a text: a file is complete or not there at all.
+///
+/// # Errors
+/// A folder that does not exist, a file or folder without write permission, or whatever the system says.
+pub fn save_text(target: &Target, text: &str) -> Result<(), OutputError> {
+    let (raw, placement) = match target {
+        Target::File(path) => open(path).map_err(|source| target.error("create", source))?,
+        Target::Stdout => (Raw::Stdout(io::stdout()), Placement::InPlace),
+    };
+    let mut output = Watched { raw, failure: Failure::default() };
+    output.write_all(text.as_bytes()).and_then(|()| output.flush()).map_err(|source| target.error("write", source))?;
+    drop(output);
+    placement.settle().map_err(|source| target.error("finish", source))
+}
+
 fn invalid(reason: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidInput, reason)
 }

@@ -162,7 +162,7 @@ impl Gpu {
 
     fn open_adapter(info: DeviceInfo, adapter: &wgpu::Adapter) -> Result<Self, Error> {
         let shares_memory = matches!(info.kind, "software" | "integrated");
-        let mut features = wgpu::Features::SHADER_F64;
+        let mut features = wgpu::Features::SHADER_F64 | wgpu::Features::TIMESTAMP_QUERY;
         if shares_memory {
             features |= wgpu::Features::MAPPABLE_PRIMARY_BUFFERS;
         }

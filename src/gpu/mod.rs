@@ -11,6 +11,7 @@ mod readable;
 mod render;
 mod selftest;
 mod shader;
+mod timestamps;
 
 pub use device::{Choice, DeviceInfo, Gpu, list};
 pub use echo::echo_layout;

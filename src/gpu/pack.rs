@@ -22,9 +22,9 @@ pub(super) struct Packed {
     pub(super) materials: Vec<u8>,
     /// One per light.
     pub(super) lights: Vec<u8>,
-    /// x of each column on the image plane, on to the end of the last tile, and then what rounding took from each.
+    /// x of each sample column on the image plane, on to the end of the last tile, and then what rounding took from each.
     pub(super) columns: Vec<u8>,
-    /// y of each row on the image plane, likewise.
+    /// y of each sample row on the image plane, likewise.
     pub(super) rows: Vec<u8>,
     /// What rounding took from spheres and lights, for the tier that carries it.
     pub(super) low: Option<Low>,
@@ -52,15 +52,15 @@ impl Packed {
 
 fn pack<L: Layout>(scene: &Scene, settings: &Settings, effects: &Effects, with_low: bool) -> Packed {
     let on = |effect| effects.set.has(effect);
-    let camera = Camera::new(scene, settings.sampling);
+    let camera = Camera::new(scene, settings);
     let ellipsoids = ellipsoids(scene, on(Effect::Ellipsoids));
     let indices = match settings.secondary {
         Secondary::SkipSelf => shape_indices(&ellipsoids),
         Secondary::Epsilon { .. } => (0..ellipsoids.len() as u32).collect(),
     };
     let shapes = shape_values(&ellipsoids, indices, on(Effect::Ellipsoids));
-    let columns: Vec<f64> = (0..scene.width.next_multiple_of(TILE)).map(|i| camera.x(i)).collect();
-    let rows: Vec<f64> = (0..scene.height.next_multiple_of(TILE)).map(|j| camera.y(j)).collect();
+    let columns: Vec<f64> = (0..scene.width.next_multiple_of(TILE) * settings.samples).map(|i| camera.x(i)).collect();
+    let rows: Vec<f64> = (0..scene.height.next_multiple_of(TILE) * settings.samples).map(|j| camera.y(j)).collect();
 
     let params = ParamValues {
         background: scene.background,

@@ -25,6 +25,8 @@ pub struct Specialisation {
     pub blinn: bool,
     /// Numbers of spheres and lights, where they are few enough to be compiled in.
     pub few: Option<[u32; 2]>,
+    /// Side of the grid of samples in a pixel.
+    pub samples: u32,
     /// Whether each pixel also says how many rays it took.
     pub count_rays: bool,
 }
@@ -39,6 +41,7 @@ impl Specialisation {
             skip_self: settings.secondary == Secondary::SkipSelf,
             blinn: settings.specular == Specular::Blinn,
             few: few.then_some([scene.spheres.len() as u32, scene.lights.len() as u32]),
+            samples: settings.samples,
             count_rays: false,
         }
     }
@@ -56,6 +59,7 @@ impl Specialisation {
             ("ELLIPSOIDS", on(Effect::Ellipsoids)),
             ("SKIP_SELF", f64::from(self.skip_self)),
             ("BLINN", f64::from(self.blinn)),
+            ("SAMPLES", f64::from(self.samples)),
             ("COUNT_RAYS", f64::from(self.count_rays)),
         ];
         if let Some([spheres, lights]) = self.few {

@@ -10,6 +10,7 @@ use super::error::Error;
 use super::pack::Packed;
 use super::pipeline::{MAX_FEW, Specialisation, compile};
 use super::readable::Readable;
+use super::timestamps::Timestamps;
 use crate::camera::Camera;
 use crate::effects::{Effect, Effects};
 use crate::geometry::in_range;
@@ -34,6 +35,8 @@ pub struct DeviceTimes {
     pub compile: Duration,
     /// All dispatches, from submission to completion.
     pub render: Duration,
+    /// All dispatches by the device's own clock; zero where it is not asked or has none.
+    pub on_device: Duration,
     /// From the device's memory to rows.
     pub read_back: Duration,
     /// The longest dispatch.
@@ -50,6 +53,8 @@ pub struct GpuRenderer<'a> {
     gpu: &'a Gpu,
     cover: Cover,
     width: u32,
+    /// Samples of a pixel.
+    samples: u64,
     /// Number of tiles of the whole picture; no band has more.
     picture_tiles: u64,
     background: [u8; 3],
@@ -57,6 +62,7 @@ pub struct GpuRenderer<'a> {
     kernel_inputs: Inputs,
     tiles_per_dispatch: u32,
     times: DeviceTimes,
+    timestamps: Option<Timestamps>,
     /// Shadow and reflection rays so far, where they are counted.
     rays: [u64; 2],
 }
@@ -88,8 +94,10 @@ impl<'a> GpuRenderer<'a> {
         let (scene, settings) = (scene.as_ref(), &settings);
         let packed = Packed::new(scene, settings, effects, tier);
         check_fits(gpu, &packed)?;
-        let camera = Camera::new(scene, settings.sampling);
-        let tests_per_pixel = (scene.spheres.len() as u64 + 1)
+        let camera = Camera::new(scene, settings);
+        let samples = u64::from(settings.samples * settings.samples);
+        let tests_per_pixel = samples
+            * (scene.spheres.len() as u64 + 1)
             * (1 + scene.lights.len() as u64 * u64::from(effects.set.has(Effect::Shadows)))
             * (1 + u64::from(effects.depth));
         let first = FIRST_DISPATCH_TESTS / (tests_per_pixel * TILE_PIXELS as u64);
@@ -97,12 +105,14 @@ impl<'a> GpuRenderer<'a> {
             gpu,
             cover: Cover::new(scene, &camera, effects.set.has(Effect::Ellipsoids)),
             width: scene.width,
+            samples,
             picture_tiles: u64::from(scene.width.div_ceil(TILE)) * u64::from(scene.height.div_ceil(TILE)),
             background: settings.quantize.levels(scene.background),
             kernel: None,
             kernel_inputs: Inputs { packed, specialisation: Specialisation::new(scene, settings, effects.set, tier) },
             tiles_per_dispatch: first.clamp(1, u64::from(MAX_DISPATCH_TILES)) as u32,
             times: DeviceTimes::default(),
+            timestamps: None,
             rays: [0; 2],
         })
     }
@@ -117,9 +127,15 @@ impl<'a> GpuRenderer<'a> {
         self.kernel_inputs.specialisation.count_rays = true;
     }
 
+    /// Reads the device's own clock from now on; returns whether it has one.
+    pub fn time_on_device(&mut self) -> bool {
+        self.timestamps = Timestamps::new(self.gpu);
+        self.timestamps.is_some()
+    }
+
     /// Primary, shadow and reflection rays so far; `None` where they are not counted.
     pub fn rays(&self) -> Option<[u64; 3]> {
-        let primary = self.times.tiles * TILE_PIXELS as u64;
+        let primary = self.times.tiles * TILE_PIXELS as u64 * self.samples;
         self.kernel_inputs.specialisation.count_rays.then_some([primary, self.rays[0], self.rays[1]])
     }
 
@@ -170,6 +186,9 @@ impl<'a> GpuRenderer<'a> {
         self.submit(kernel, tiles)?;
         let took = start.elapsed();
         self.times.render += took;
+        if let Some(timestamps) = &self.timestamps {
+            self.times.on_device += timestamps.elapsed(self.gpu)?;
+        }
         self.times.longest_dispatch = self.times.longest_dispatch.max(took);
         self.times.dispatches += 1;
         self.times.tiles += tiles.len() as u64;
@@ -181,10 +200,16 @@ impl<'a> GpuRenderer<'a> {
         self.gpu.queue.write_buffer(&kernel.tiles, 0, bytemuck::cast_slice(tiles));
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: None,
+                timestamp_writes: self.timestamps.as_ref().map(Timestamps::writes),
+            });
             pass.set_pipeline(&kernel.pipeline);
             pass.set_bind_group(0, &kernel.bind_group, &[]);
             pass.dispatch_workgroups(tiles.len() as u32, 1, 1);
+        }
+        if let Some(timestamps) = &self.timestamps {
+            timestamps.resolve(&mut encoder);
         }
         self.gpu.queue.submit([encoder.finish()]);
         self.gpu.wait()

@@ -1,7 +1,20 @@
 //! What accuracy and effects cost in time, measured on the user's scene and device.
 
+mod contestant;
 mod effect_cost;
+mod error;
+mod measure;
+mod number;
+mod plots;
+mod report;
 mod sample;
+mod svg;
+mod table;
 
+pub use contestant::Contestant;
 pub use effect_cost::{EffectCost, Variant, effect_cost};
+pub use error::{Distance, Error};
+pub use measure::{Plan, Point, Series, Skipped, Study, Subject, Truth, study};
+pub use report::html;
 pub use sample::Sample;
+pub use table::{COLUMNS, csv};

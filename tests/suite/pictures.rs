@@ -260,3 +260,69 @@ fn a_lost_device_is_an_error_and_no_panic() {
     let error = renderer.rows(0, &mut rgb).unwrap_err();
     assert!(matches!(error, gpu::Error::Lost(_)), "{error:?}");
 }
+
+/// Black left of x = 0, white right of it, through the middle of the pixel column 1 of 3.
+#[test]
+fn samples_average_an_edge() {
+    let text = "SPHERE s 1e4 0 -10 1e4 1e4 1e4 1 1 1 1 0 0 0 1\nAMBIENT 1 1 1\nBACK 0 0 0";
+    let mut scene = scene_of(text);
+    (scene.width, scene.height) = (3, 3);
+    let gpu = gpu("samples_average_an_edge");
+    for (side, expected) in [(1, None), (2, Some(128)), (4, Some(128)), (6, Some(128))] {
+        let settings = Settings { samples: side, ..Settings::exact() };
+        let effects = Effects::of(&scene, &settings);
+        let mut pictures = vec![cpu_picture::<f64>(&scene, &settings, &effects).0];
+        if let Some(gpu) = &gpu {
+            pictures.extend(tiers(gpu).map(|tier| gpu_picture(gpu, tier, &scene, &settings, &effects).0));
+        }
+        for picture in pictures {
+            assert_eq!([picture.pixel(0, 1), picture.pixel(2, 1)], [[0; 3], [255; 3]], "{side}");
+            if let Some(level) = expected {
+                assert_eq!(picture.pixel(1, 1), [level; 3], "{side}");
+            }
+        }
+    }
+}
+
+/// The mean of equal colours is that colour: no rim around the tiles that spheres cover.
+#[test]
+fn samples_of_one_colour_change_no_level() {
+    let Some(gpu) = gpu("samples_of_one_colour_change_no_level") else { return };
+    let scene = scene_of("SPHERE s 0 0 -5 0.5 0.5 0.5 1 1 1 1 0 0 0 1\nAMBIENT 1 1 1\nBACK 0.2 0.6 0.1");
+    for side in [1, 2, 3, 5] {
+        let settings = Settings { samples: side, ..Settings::classic() };
+        let effects = Effects::of(&scene, &settings);
+        let background = settings.quantize.levels(scene.background);
+        let inside_a_covered_tile = (16, 16);
+        let (on_cpu, _) = cpu_picture::<f64>(&scene, &settings, &effects);
+        let (on_gpu, _) = gpu_picture(&gpu, Tier::Fast, &scene, &settings, &effects);
+        for picture in [on_cpu, on_gpu] {
+            assert_eq!(picture.pixel(0, 0), background, "{side}");
+            assert_eq!(picture.pixel(inside_a_covered_tile.0, inside_a_covered_tile.1), background, "{side}");
+        }
+    }
+}
+
+#[test]
+fn pictures_of_several_samples_differ_from_the_reference_only_where_explained() {
+    let Some(gpu) = gpu("pictures_of_several_samples_differ_from_the_reference_only_where_explained") else { return };
+    for (side, base) in [(2, Settings::classic()), (3, Settings::exact())] {
+        let settings = Settings { samples: side, ..base };
+        for file in scene_files(&["effects"]) {
+            let scene = scene(&file);
+            let effects = Effects::of(&scene, &settings);
+            let (picture, not_finite) = gpu_picture(&gpu, Tier::Fast, &scene, &settings, &effects);
+            assert_eq!(not_finite, 0);
+            assert_explained(
+                &format!("{}, {side} × {side} samples", short(&file)),
+                &picture,
+                &scene,
+                &settings,
+                Tier::Fast,
+            );
+            let all = Effects::requested(&scene, &settings, &Request::Exactly(EffectSet::ALL));
+            let (generic, _) = gpu_picture(&gpu, Tier::Fast, &scene, &settings, &all);
+            assert!(picture == generic, "{}: {}", short(&file), effects.set);
+        }
+    }
+}

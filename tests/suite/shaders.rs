@@ -26,7 +26,8 @@ fn every_effect_set_is_valid() {
         for effects in EffectSet::every() {
             for flags in 0..8 {
                 let [skip_self, blinn, count_rays] = [1, 2, 4].map(|bit| flags & bit != 0);
-                let specialisation = Specialisation { tier, effects, skip_self, blinn, few, count_rays };
+                let specialisation =
+                    Specialisation { tier, effects, skip_self, blinn, few, samples: 1 + flags / 4, count_rays };
                 let constants = specialisation.constants().into_iter().map(|(name, value)| (name.to_owned(), value));
                 let constants = constants.collect();
                 let entry_point = Some((naga::ShaderStage::Compute, ENTRY_POINT));
@@ -44,8 +45,15 @@ fn every_constant_is_an_override_and_every_override_is_set() {
     for (tier, few) in kinds() {
         let module = Module::render(tier, few.is_some()).parse().unwrap();
         let mut declared: Vec<_> = module.overrides.iter().map(|(_, o)| o.name.clone().unwrap()).collect();
-        let specialisation =
-            Specialisation { tier, effects: EffectSet::ALL, skip_self: true, blinn: true, few, count_rays: true };
+        let specialisation = Specialisation {
+            tier,
+            effects: EffectSet::ALL,
+            skip_self: true,
+            blinn: true,
+            few,
+            samples: 2,
+            count_rays: true,
+        };
         let mut set: Vec<_> = specialisation.constants().into_iter().map(|(name, _)| name.to_owned()).collect();
         declared.sort();
         set.sort();

@@ -48,7 +48,7 @@ proptest! {
         let sampling = if centered { Sampling::Center } else { Sampling::Corner };
         let settings = Settings { sampling, ..Settings::classic() };
 
-        let cover = Cover::new(&scene, &Camera::new(&scene, sampling), true);
+        let cover = Cover::new(&scene, &Camera::new(&scene, &settings), true);
         let tiles: HashSet<[u32; 2]> = cover.tiles(0, height).into_iter().collect();
         let reference = Reference::<f64>::new(&scene, &settings, &Effects::of(&scene, &settings));
         for y in 0..height {
@@ -69,7 +69,7 @@ proptest! {
 fn tiles_follow_the_outline() {
     let mut scene = scene_of("SPHERE s 0.5 0.2 -9 3 5 2 1 1 1 1 0 0 0 1");
     (scene.width, scene.height) = (800, 800);
-    let count = |scene| Cover::new(scene, &Camera::new(scene, Sampling::Corner), true).tiles(0, 800).len() as f64;
+    let count = |scene| Cover::new(scene, &Camera::new(scene, &Settings::classic()), true).tiles(0, 800).len() as f64;
     let outlined = count(&scene);
     // The ellipse covers π/4 of its rectangle, of about 267 × 444 pixels.
     let rectangle = 2.0 * 3.0 / 9.0 / 2.0 * 100.0 * (2.0 * 5.0 / 9.0 / 2.0 * 100.0);

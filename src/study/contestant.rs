@@ -1,0 +1,135 @@
+//! What is measured: every kernel and the CPU reference, run and timed alike.
+
+use std::time::Instant;
+
+use serde::{Serialize, Serializer};
+
+use crate::cpu::{Judge, Reference};
+use crate::effects::Effects;
+use crate::engine::{Backend, Engine};
+use crate::gpu::{self, Gpu};
+use crate::precision::Tier;
+use crate::scene::Scene;
+use crate::settings::Settings;
+
+/// Something that renders the scene and is measured. Nothing but this file knows the list: a kernel that only the study
+/// runs becomes another variant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Contestant {
+    /// The device with the kernel of a tier.
+    Device(Tier),
+    /// The CPU reference's formulas in `f32`.
+    CpuSingle,
+    /// The CPU reference.
+    CpuDouble,
+}
+
+impl Contestant {
+    /// All of them, in the order of the tables.
+    pub const ALL: [Self; 5] = [
+        Self::Device(Tier::Fast),
+        Self::Device(Tier::Robust),
+        Self::Device(Tier::Double),
+        Self::CpuSingle,
+        Self::CpuDouble,
+    ];
+
+    /// The name in tables and plots.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Device(tier) => tier.name(),
+            Self::CpuSingle => "CPU f32",
+            Self::CpuDouble => "CPU f64",
+        }
+    }
+
+    /// Why it cannot run on `gpu`, where it cannot.
+    pub(super) fn obstacle(self, gpu: Option<&Gpu>) -> Option<String> {
+        match (self, gpu) {
+            (Self::Device(_), None) => Some("no Vulkan device is used".into()),
+            (Self::Device(Tier::Double), Some(gpu)) if !gpu.info.f64 => Some("the device has no f64 in shaders".into()),
+            _ => None,
+        }
+    }
+
+    /// Judges its pictures.
+    pub(super) fn judge(self) -> Judge {
+        Judge::of(match self {
+            Self::Device(tier) => tier,
+            Self::CpuSingle => Tier::Fast,
+            Self::CpuDouble => Tier::Double,
+        })
+    }
+}
+
+impl Serialize for Contestant {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+/// A contestant with a scene, ready to render it again and again.
+#[derive(Debug)]
+pub(super) struct Runner<'a> {
+    renderer: Renderer<'a>,
+    /// The last picture, 3 bytes a pixel.
+    pub(super) rgb: Vec<u8>,
+    has_clock: bool,
+}
+
+#[derive(Debug)]
+enum Renderer<'a> {
+    Engine(Box<Engine<'a>>),
+    Single(Box<Reference<f32>>),
+}
+
+/// One run.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Run {
+    /// From the prepared scene to rows in memory by the wall clock, in ms; without compiling.
+    pub(super) wall_ms: f64,
+    /// The dispatches by the device's own clock, in ms; `None` where there is none.
+    pub(super) device_ms: Option<f64>,
+    /// Pixels that are not finite.
+    pub(super) not_finite: u64,
+}
+
+impl<'a> Runner<'a> {
+    pub(super) fn new(
+        contestant: Contestant,
+        gpu: Option<&'a Gpu>,
+        scene: &Scene,
+        settings: &Settings,
+        effects: &Effects,
+    ) -> Result<Self, gpu::Error> {
+        let mut has_clock = false;
+        let renderer = match (contestant, gpu) {
+            (Contestant::CpuSingle, _) => Renderer::Single(Box::new(Reference::new(scene, settings, effects))),
+            (Contestant::Device(tier), Some(gpu)) => {
+                let mut engine = Engine::new(Backend::Device(gpu, tier), scene, settings, effects)?;
+                has_clock = engine.time_on_device();
+                Renderer::Engine(Box::new(engine))
+            }
+            _ => Renderer::Engine(Box::new(Engine::new(Backend::Reference, scene, settings, effects)?)),
+        };
+        Ok(Self { renderer, rgb: vec![0; scene.width as usize * scene.height as usize * 3], has_clock })
+    }
+
+    /// Renders the whole picture once.
+    pub(super) fn run(&mut self) -> Result<Run, gpu::Error> {
+        let start = Instant::now();
+        match &mut self.renderer {
+            Renderer::Single(reference) => {
+                let not_finite = reference.rows(0, &mut self.rgb).not_finite;
+                Ok(Run { wall_ms: start.elapsed().as_secs_f64() * 1e3, device_ms: None, not_finite })
+            }
+            Renderer::Engine(engine) => {
+                let before = (engine.times().compile_ms, engine.on_device_ms());
+                let not_finite = engine.rows(0, &mut self.rgb)?;
+                let wall_ms = start.elapsed().as_secs_f64() * 1e3 - (engine.times().compile_ms - before.0);
+                let device_ms = self.has_clock.then(|| engine.on_device_ms() - before.1);
+                Ok(Run { wall_ms, device_ms, not_finite })
+            }
+        }
+    }
+}

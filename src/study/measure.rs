@@ -1,0 +1,291 @@
+//! The measurements: every contestant at the chosen settings, over depths and over samples per pixel.
+
+use glam::DVec3;
+use serde::Serialize;
+
+use super::contestant::{Contestant, Runner};
+use super::effect_cost::{EffectCost, effect_cost};
+use super::error::{Distance, Error, linear_colors};
+use super::sample::Sample;
+use crate::compare::Explanation;
+use crate::cpu::Reference;
+use crate::effects::{EffectSet, Effects};
+use crate::engine::Backend;
+use crate::film::Picture;
+use crate::gpu::{self, DeviceInfo, Gpu};
+use crate::precision::Selection;
+use crate::scene::Scene;
+use crate::settings::Settings;
+
+/// However little time there is, so many runs are counted, if so many were asked for.
+const LEAST_RUNS: usize = 3;
+
+/// What to measure.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// Counted runs of each point, after one warm-up.
+    pub runs: usize,
+    /// Time to spend on the counted runs of one series, in s; longer pictures get fewer runs.
+    pub seconds: f64,
+    /// Reflection depths to compare; empty: from 0 to the greatest that can matter.
+    pub depths: Vec<u32>,
+    /// Sides of the grids of samples to compare.
+    pub sides: Vec<u32>,
+}
+
+/// A scene and how to render it.
+#[derive(Clone, Copy)]
+pub struct Subject<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// The scene.
+    pub scene: &'a Scene,
+    /// Conventions, depth and samples.
+    pub settings: &'a Settings,
+    /// What is simulated under other settings.
+    pub effects: &'a dyn Fn(&Settings) -> Effects,
+    /// The device; `None` leaves the CPU.
+    pub gpu: Option<&'a Gpu>,
+    /// The tier that measures what effects cost.
+    pub selection: &'a Selection,
+}
+
+/// All measurements of one scene.
+#[derive(Debug, Clone, Serialize)]
+pub struct Study {
+    /// The scene's name.
+    pub scene: String,
+    /// Pixels in a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Number of spheres.
+    pub spheres: usize,
+    /// Number of lights.
+    pub lights: usize,
+    /// The device; `None` where only the CPU was measured.
+    pub device: Option<DeviceInfo>,
+    /// Threads of the CPU reference.
+    pub cpu_threads: usize,
+    /// Conventions, depth and samples.
+    pub settings: Settings,
+    /// What the scene calls for.
+    pub effects: EffectSet,
+    /// The tier that covers the scene, and why.
+    pub selection: Selection,
+    /// What was not measured.
+    pub skipped: Vec<Skipped>,
+    /// Every contestant at the settings.
+    pub precision: Series,
+    /// Over reflection depths.
+    pub depth: Series,
+    /// Over samples per pixel.
+    pub samples: Series,
+    /// What each effect costs.
+    pub effect_cost: EffectCost,
+}
+
+/// A contestant that was not measured.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Skipped {
+    /// Its name.
+    pub name: String,
+    /// Why.
+    pub reason: String,
+}
+
+/// Points that were measured in turn: each once, then each once more, and so on.
+#[derive(Debug, Clone, Serialize)]
+pub struct Series {
+    /// Counted runs of each point.
+    pub runs: usize,
+    /// Depth and samples per pixel of the picture that stands for the truth, where it is another than the reference of the
+    /// same depth and samples.
+    pub truth: Option<Truth>,
+    /// The points.
+    pub points: Vec<Point>,
+}
+
+/// The picture that stands for the truth: the CPU reference in `f64` with more of what a series varies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Truth {
+    /// Its reflection depth.
+    pub depth: u32,
+    /// Its samples per pixel.
+    pub samples: u32,
+}
+
+/// One contestant at one depth and number of samples.
+#[derive(Debug, Clone, Serialize)]
+pub struct Point {
+    /// What rendered.
+    pub contestant: Contestant,
+    /// Greatest number of reflection bounces.
+    pub depth: u32,
+    /// Samples per pixel.
+    pub samples: u32,
+    /// Times by the wall clock, from the prepared scene to rows in memory.
+    pub wall: Sample,
+    /// Times of the dispatches by the device's own clock; `None` where there is none.
+    pub on_device: Option<Sample>,
+    /// Pixels that are not finite.
+    pub not_finite: u64,
+    /// Distance from the reference of the same depth and samples.
+    pub error: Distance,
+    /// Pixels that differ from it without a decision that explains it.
+    pub unexplained: u64,
+    /// Distance from the series' truth.
+    pub from_truth: Option<Distance>,
+}
+
+/// The reference's picture before and after it is quantised.
+struct Exact {
+    reference: Reference<f64>,
+    linear: Vec<DVec3>,
+    picture: Picture,
+}
+
+impl Exact {
+    fn new(subject: &Subject, settings: &Settings) -> Result<Self, Error> {
+        let scene = subject.scene;
+        let reference = Reference::new(scene, settings, &(subject.effects)(settings));
+        let linear = linear_colors(&reference, (scene.width, scene.height));
+        let rgb = linear.iter().flat_map(|color| settings.quantize.levels(*color)).collect();
+        Ok(Self { reference, linear, picture: Picture::new(scene.width, scene.height, rgb)? })
+    }
+}
+
+/// Measures everything that `plan` asks for.
+pub fn study(subject: &Subject, plan: &Plan) -> Result<Study, Error> {
+    let Subject { scene, settings, gpu, selection, .. } = *subject;
+    let mut skipped = Vec::new();
+    let mut contestants = Contestant::ALL.to_vec();
+    contestants.retain(|contestant| match contestant.obstacle(gpu) {
+        None => true,
+        Some(reason) => {
+            skipped.push(Skipped { name: contestant.name().into(), reason });
+            false
+        }
+    });
+    let base = Settings { ..*settings };
+    let precision = series(subject, plan, &mut contestants, &mut skipped, &[base], None)?;
+
+    contestants.retain(|contestant| *contestant != Contestant::CpuSingle);
+    let effects = (subject.effects)(settings);
+    let depths = if plan.depths.is_empty() { (0..=effects.depth).collect() } else { plan.depths.clone() };
+    let at_depth = |max_depth| Settings { max_depth, ..base };
+    let deeper = at_depth((depths.iter().max().copied().unwrap_or(0) * 2).clamp(8, Settings::MAX_DEPTH));
+    let variants: Vec<_> = depths.iter().map(|&depth| at_depth(depth)).collect();
+    let depth = series(subject, plan, &mut contestants, &mut skipped, &variants, Some(deeper))?;
+
+    let with_side = |samples| Settings { samples, ..base };
+    let finer = with_side((plan.sides.iter().max().copied().unwrap_or(1) * 2).min(Settings::MAX_SAMPLES));
+    let variants: Vec<_> = plan.sides.iter().map(|&side| with_side(side)).collect();
+    let samples = series(subject, plan, &mut contestants, &mut skipped, &variants, Some(finer))?;
+
+    let backend = gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, selection.tier));
+    Ok(Study {
+        scene: subject.name.to_owned(),
+        width: scene.width,
+        height: scene.height,
+        spheres: scene.spheres.len(),
+        lights: scene.lights.len(),
+        device: gpu.map(|gpu| gpu.info.clone()),
+        cpu_threads: rayon::current_num_threads(),
+        settings: *settings,
+        effects: effects.set,
+        selection: selection.clone(),
+        skipped,
+        precision,
+        depth,
+        samples,
+        effect_cost: effect_cost(backend, scene, settings, plan.runs)?,
+    })
+}
+
+/// Measures `contestants` under each of `variants`; one that the device refuses is skipped from then on.
+fn series(
+    subject: &Subject,
+    plan: &Plan,
+    contestants: &mut Vec<Contestant>,
+    skipped: &mut Vec<Skipped>,
+    variants: &[Settings],
+    truth: Option<Settings>,
+) -> Result<Series, Error> {
+    let truth = truth.map(|settings| Ok::<_, Error>((settings, Exact::new(subject, &settings)?))).transpose()?;
+    let mut measured = Vec::new();
+    let mut round_ms = 0.0;
+    for settings in variants {
+        let exact = Exact::new(subject, settings)?;
+        for contestant in contestants.clone() {
+            match warm_up(subject, contestant, settings, &exact, truth.as_ref().map(|(_, truth)| truth)) {
+                Ok((runner, point, ms)) => {
+                    measured.push((runner, point));
+                    round_ms += ms;
+                }
+                Err(Error::Device(gpu::Error::NoDevice(reason))) => {
+                    contestants.retain(|other| *other != contestant);
+                    skipped.push(Skipped { name: contestant.name().into(), reason });
+                }
+                Err(error) => return Err(error),
+            }
+        }
+    }
+    let affordable = (plan.seconds * 1e3 / round_ms) as usize;
+    let runs = affordable.max(LEAST_RUNS).min(plan.runs);
+    for _ in 0..runs {
+        for (runner, point) in &mut measured {
+            let run = runner.run()?;
+            point.wall.push(run.wall_ms);
+            if let (Some(sample), Some(ms)) = (&mut point.on_device, run.device_ms) {
+                sample.push(ms);
+            }
+        }
+    }
+    Ok(Series {
+        runs,
+        truth: truth.map(|(settings, _)| Truth { depth: settings.max_depth, samples: settings.samples.pow(2) }),
+        points: measured.into_iter().map(|(_, point)| point).collect(),
+    })
+}
+
+/// Renders once and compares; returns the renderer, the point without times, and the time of the next run, about, in ms.
+fn warm_up<'a>(
+    subject: &Subject<'a>,
+    contestant: Contestant,
+    settings: &Settings,
+    exact: &Exact,
+    truth: Option<&Exact>,
+) -> Result<(Runner<'a>, Point, f64), Error> {
+    let Subject { scene, gpu, .. } = *subject;
+    let effects = (subject.effects)(settings);
+    let mut runner = Runner::new(contestant, gpu, scene, settings, &effects)?;
+    let run = runner.run()?;
+    let linear = match contestant {
+        Contestant::Device(_) => None,
+        Contestant::CpuSingle => {
+            let reference = Reference::<f32>::new(scene, settings, &effects);
+            Some(linear_colors(&reference, (scene.width, scene.height)))
+        }
+        Contestant::CpuDouble => Some(exact.linear.clone()),
+    };
+    let distance = |from: &Exact| {
+        let distance = Distance::between(&runner.rgb, from.picture.rgb());
+        linear.as_ref().map_or(distance, |linear| distance.with_linear(linear, &from.linear))
+    };
+    let (error, from_truth) = (distance(exact), truth.map(distance));
+    let picture = Picture::new(scene.width, scene.height, runner.rgb.clone())?;
+    let explanation = Explanation::of(&picture, &exact.picture, &exact.reference, &contestant.judge());
+    let point = Point {
+        contestant,
+        depth: settings.max_depth,
+        samples: settings.samples.pow(2),
+        wall: Sample::default(),
+        on_device: run.device_ms.map(|_| Sample::default()),
+        not_finite: run.not_finite,
+        error,
+        unexplained: explanation.unexplained,
+        from_truth,
+    };
+    Ok((runner, point, run.wall_ms))
+}

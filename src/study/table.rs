@@ -1,0 +1,204 @@
+//! The measurements as tables for the terminal and as CSV.
+
+use std::fmt::Write as _;
+
+use super::measure::{Point, Series, Study};
+use super::number::{short, time};
+use super::sample::Sample;
+
+impl Study {
+    /// Tables for people.
+    pub fn report(&self) -> String {
+        let mut text = String::new();
+        let device = self.device.as_ref().map_or_else(|| "the CPU alone".to_owned(), ToString::to_string);
+        let Self { scene, width, height, spheres, lights, .. } = self;
+        let _ = writeln!(text, "{scene}: {width} × {height}, {spheres} spheres, {lights} lights, on {device}");
+        for skipped in &self.skipped {
+            let _ = writeln!(text, "not measured: {}: {}", skipped.name, skipped.reason);
+        }
+        for (title, series) in self.titled() {
+            let _ = write!(text, "\n{title}, {} runs\n{}", series.runs, series.report());
+        }
+        let _ = write!(text, "\nWhat each effect costs ({})\n{}", self.effects_on(), self.effect_cost.report());
+        text
+    }
+
+    /// The three series with their titles.
+    pub(super) fn titled(&self) -> [(String, &Series); 3] {
+        let against = |series: &Series| match series.truth {
+            Some(truth) => format!("error against depth {}, {} spp", truth.depth, truth.samples),
+            None => "error against the CPU reference".into(),
+        };
+        let title = |what: &str, series: &Series| format!("{what}; {}", against(series));
+        [
+            (title("Precision", &self.precision), &self.precision),
+            (title("Reflection depth", &self.depth), &self.depth),
+            (title("Samples per pixel", &self.samples), &self.samples),
+        ]
+    }
+
+    /// What measured the effects.
+    pub(super) fn effects_on(&self) -> String {
+        if self.device.is_some() { format!("tier {}", self.selection.tier) } else { "CPU f64".into() }
+    }
+}
+
+/// What can be trusted of a sample, in a word for the last column; empty where all is well.
+pub(super) fn caution(sample: &Sample) -> String {
+    match sample.outliers() {
+        0 => String::new(),
+        1 => "1 outlier".into(),
+        count => format!("{count} outliers"),
+    }
+}
+
+impl Series {
+    fn report(&self) -> String {
+        let mut text = format!(
+            "{:<8} {:>5} {:>4} {:>10} {:>19} {:>10} {:>9} {:>5} {:>9} {:>9} {:>11}\n",
+            "",
+            "depth",
+            "spp",
+            "median",
+            "min … max",
+            "on device",
+            "differ",
+            "max",
+            "RMS level",
+            "linear",
+            "unexplained"
+        );
+        for point in &self.points {
+            let Point { contestant, depth, samples, wall, unexplained, .. } = point;
+            let distance = point.from_truth.unwrap_or(point.error);
+            let on_device = point.on_device.as_ref().map_or_else(|| "–".into(), |sample| time(sample.median()));
+            let range = format!("{} … {}", short(wall.min()), time(wall.max()));
+            let linear = distance.rms_linear.map_or_else(|| "–".into(), short);
+            let median = time(wall.median());
+            let _ = writeln!(
+                text,
+                "{:<8} {depth:>5} {samples:>4} {median:>10} {range:>19} {on_device:>10} {:>9} {:>5} {:>9} {linear:>9} {unexplained:>11}  {}",
+                contestant.name(),
+                distance.differing,
+                distance.max_level,
+                short(distance.rms_level),
+                caution(wall)
+            );
+        }
+        text
+    }
+}
+
+/// Names of the columns of [`csv`].
+pub const COLUMNS: [&str; 29] = [
+    "scene",
+    "width",
+    "height",
+    "device",
+    "driver",
+    "series",
+    "name",
+    "depth",
+    "spp",
+    "runs",
+    "wall_median_ms",
+    "wall_min_ms",
+    "wall_max_ms",
+    "wall_outliers",
+    "device_median_ms",
+    "differing",
+    "max_level",
+    "mean_level",
+    "rms_level",
+    "rms_linear",
+    "unexplained",
+    "not_finite",
+    "truth_depth",
+    "truth_spp",
+    "truth_differing",
+    "truth_rms_level",
+    "truth_rms_linear",
+    "same_picture",
+    "wall_runs_ms",
+];
+
+/// All points of all studies as CSV (RFC 4180) with a line of column names; times in ms, errors in levels or linear
+/// intensity, the single runs separated by blanks.
+pub fn csv(studies: &[Study]) -> String {
+    let mut text = line(&COLUMNS.map(str::to_owned));
+    for study in studies {
+        let (device, driver) =
+            study.device.as_ref().map_or_else(Default::default, |info| (info.name.clone(), info.driver.clone()));
+        let head = [study.scene.clone(), study.width.to_string(), study.height.to_string(), device, driver];
+        for (name, series) in [("precision", &study.precision), ("depth", &study.depth), ("samples", &study.samples)] {
+            for point in &series.points {
+                text += &line(&[&head[..], &fields(name, series, point)].concat());
+            }
+        }
+        for variant in &study.effect_cost.variants {
+            let mut fields = vec![
+                "effects".to_owned(),
+                variant.name.clone(),
+                study.settings.max_depth.to_string(),
+                study.settings.samples.pow(2).to_string(),
+            ];
+            fields.extend(times(&variant.render));
+            fields.extend(std::iter::repeat_n(String::new(), 13));
+            fields.extend([variant.same_picture.to_string(), runs(&variant.render)]);
+            text += &line(&[&head[..], &fields].concat());
+        }
+    }
+    text
+}
+
+fn times(sample: &Sample) -> [String; 5] {
+    [
+        sample.runs().len().to_string(),
+        sample.median().to_string(),
+        sample.min().to_string(),
+        sample.max().to_string(),
+        sample.outliers().to_string(),
+    ]
+}
+
+fn runs(sample: &Sample) -> String {
+    sample.runs().iter().map(ToString::to_string).collect::<Vec<_>>().join(" ")
+}
+
+fn fields(name: &str, series: &Series, point: &Point) -> Vec<String> {
+    let optional = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
+    let truth = |value: Option<u64>| value.map_or_else(String::new, |value| value.to_string());
+    let mut fields =
+        vec![name.to_owned(), point.contestant.name().to_owned(), point.depth.to_string(), point.samples.to_string()];
+    fields.extend(times(&point.wall));
+    fields.extend([
+        optional(point.on_device.as_ref().map(Sample::median)),
+        point.error.differing.to_string(),
+        point.error.max_level.to_string(),
+        point.error.mean_level.to_string(),
+        point.error.rms_level.to_string(),
+        optional(point.error.rms_linear),
+        point.unexplained.to_string(),
+        point.not_finite.to_string(),
+        truth(series.truth.map(|truth| truth.depth.into())),
+        truth(series.truth.map(|truth| truth.samples.into())),
+        truth(point.from_truth.map(|distance| distance.differing)),
+        optional(point.from_truth.map(|distance| distance.rms_level)),
+        optional(point.from_truth.and_then(|distance| distance.rms_linear)),
+        String::new(),
+        runs(&point.wall),
+    ]);
+    fields
+}
+
+/// One record; fields with separators or quotes are quoted.
+fn line(fields: &[String]) -> String {
+    let quoted = |field: &String| {
+        if field.contains([',', '"', '\n', '\r']) {
+            format!("\"{}\"", field.replace('"', "\"\""))
+        } else {
+            field.clone()
+        }
+    };
+    fields.iter().map(quoted).collect::<Vec<_>>().join(",") + "\n"
+}
