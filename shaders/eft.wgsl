@@ -1,10 +1,5 @@
 // Error-free transforms in f32. Compilers may rewrite (a + b) - a to b and fuse or split products, so every result that must
-// stay as it is passes through barrier(); a self-test on the device decides whether that holds (src/gpu/selftest.rs).
-
-// x, through bits that no compiler knows.
-fn barrier(x: f32) -> f32 {
-    return bitcast<f32>(bitcast<u32>(x) ^ params.zero);
-}
+// stay as it is passes through barrier() of barrier.wgsl; a self-test on the device decides whether that holds (src/gpu/selftest.rs).
 
 // hi + lo, |lo| at most half a unit in the last place of hi.
 struct Pair {
@@ -43,10 +38,6 @@ fn two_product(a: f32, b: f32) -> Pair {
 }
 
 // The same for three components at once.
-
-fn barrier3(x: vec3<f32>) -> vec3<f32> {
-    return bitcast<vec3<f32>>(bitcast<vec3<u32>>(x) ^ vec3<u32>(params.zero));
-}
 
 struct Pair3 {
     hi: vec3<f32>,
