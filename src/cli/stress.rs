@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::failure::{BROKEN, Failure, OK, OUTPUT, USAGE};
 use crate::gpu::{Choice, Gpu, Kernel};
 use crate::precision::Tier;
-use crate::stress::{Class, Row, classes, run as run_classes, table};
+use crate::stress::{Class, Row, classes, cost, run as run_classes, table};
 
 /// Arguments of `trueray stress`.
 #[derive(Debug, clap::Args)]
@@ -38,6 +38,9 @@ pub(super) struct Args {
     /// Seed of the random numbers
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
+    /// Measure instead what a ray-ellipsoid test costs on each kernel, in turn, this many times
+    #[arg(long, value_name = "RUNS", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    time: Option<u32>,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -113,6 +116,9 @@ fn stress(args: &Args) -> Result<u8, Failure> {
             kernels.push(*kernel);
         }
     }
+    if let Some(runs) = args.time {
+        return time(args, &gpu, &kernels, runs as usize);
+    }
     let start = Instant::now();
     if !args.json {
         println!("{}, {} rays a case, seed {}", gpu.info, args.count, args.seed);
@@ -133,4 +139,20 @@ fn stress(args: &Args) -> Result<u8, Failure> {
         println!("{} promises broken, {seconds:.1} s", if broken == 0 { "no".to_owned() } else { broken.to_string() });
     }
     Ok(if broken == 0 { OK } else { BROKEN })
+}
+
+/// The cost of a test on each kernel.
+fn time(args: &Args, gpu: &Gpu, kernels: &[Kernel], runs: usize) -> Result<u8, Failure> {
+    let costs = cost(gpu, kernels, args.count as usize, args.seed, runs)?;
+    if args.json {
+        println!("{}", serde_json::to_string_pretty(&costs).map_err(|e| Failure::new(OUTPUT, e.to_string()))?);
+        return Ok(OK);
+    }
+    println!("{}, {} rays against 32 spheres, {runs} runs in turn", gpu.info, args.count);
+    println!("{:<10} {:>10} {:>16} {:>13}", "kernel", "ns a test", "min … max", "× schoolbook");
+    for cost in &costs {
+        let range = format!("{:.2} … {:.2}", cost.ns.min(), cost.ns.max());
+        println!("{:<10} {:>10.2} {range:>16} {:>13.2}", cost.kernel, cost.ns.median(), cost.ratio);
+    }
+    Ok(OK)
 }

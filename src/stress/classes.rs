@@ -89,7 +89,7 @@ pub fn classes() -> Vec<Class> {
             "ordinary",
             "unit spheres seen from five radii",
             "wrong, p99.9",
-            vec![rays("", rays::ordinary, [exact(3.0), exact(2.0), exact(0.7)])],
+            vec![rays("eye", rays::ordinary_eye, [exact(3.0), exact(2.0), exact(0.7)]), rays("", rays::ordinary, [exact(3.0), exact(2.0), exact(0.7)])],
         ),
         class(
             2,
@@ -104,7 +104,7 @@ pub fn classes() -> Vec<Class> {
             "tiny and far spheres",
             "wrong",
             vec![
-                rays("d/r 1e3", rays::far_3, [wrong(10.0), right(), right()]),
+                rays("eye 1e3", rays::far_3_eye, [wrong(10.0), right(), right()]), rays("eye 1e5", rays::far_5_eye, [wrong(2000.0), right(), right()]), rays("d/r 1e3", rays::far_3, [wrong(10.0), right(), right()]),
                 rays("d/r 1e5", rays::far_5, [wrong(2000.0), right(), right()]),
                 rays("d/r 1e7", rays::far_7, [flag(), right(), right()]),
             ],
@@ -128,9 +128,7 @@ pub fn classes() -> Vec<Class> {
             "tangent",
             "1-l² from 1e-12 to 1e-2, either side",
             "largest misclassified |1-l²|",
-            vec![rays(
-                "",
-                rays::tangent,
+            vec![rays("eye", rays::tangent_eye, [limits(&[(Misclassified, 4e-7)]), limits(&[(Misclassified, 2.5e-7)]), limits(&[(Misclassified, 1e-9)])]), rays("", rays::tangent,
                 [
                     limits(&[(Misclassified, 4e-7)]),
                     limits(&[(Misclassified, 2.5e-7)]),

@@ -1,6 +1,7 @@
 //! Hard cases: what each tier promises, checked on the user's device through the code that renders.
 
 mod classes;
+mod cost;
 mod metrics;
 mod pictures;
 mod random;
@@ -14,6 +15,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 pub use classes::{Class, classes};
+pub use cost::{Cost, cost};
 pub use metrics::{Limit, Metrics, Quantity, Target, Verdict};
 pub use random::Random;
 pub use report::table;
@@ -157,7 +159,7 @@ impl Shared {
         let given = if kernel.carries_low() || kernel.is_double() { Given::Whole } else { Given::Rounded };
         // Every kernel sees the same numbers.
         let mut random = self.random.clone();
-        // Pictures are rendered by tiers only.
+        // Pictures and scenes are for tiers only.
         let picture = |make: fn(&Gpu, Tier) -> Result<Metrics, Error>| match kernel {
             Kernel::Tier(tier) => make(prober.gpu(), tier).map(Some),
             Kernel::Schoolbook | Kernel::NoBarrier => Ok(None),
@@ -170,7 +172,7 @@ impl Shared {
                 Ok(Some(judge(&self.batch, &answers, truth, given, band(tier))))
             }
             Kind::Lit(_) => self.measure_light(prober).map(Some),
-            Kind::ZeroScale => Ok(Some(special::zero_scale())),
+            Kind::ZeroScale => picture(|_, _| Ok(special::zero_scale())),
             Kind::NegativeScale => special::negative_scale(prober, &mut random, self.count).map(Some),
             Kind::BitPatterns => special::bit_patterns(prober, &mut random, 2 * self.count).map(Some),
             Kind::Power => special::power(prober, &mut random, self.count).map(Some),

@@ -41,6 +41,37 @@ pub(super) fn ordinary(random: &mut Random, count: usize) -> Batch {
     at_distance(random, count, 5.0)
 }
 
+/// Unit spheres at `distance` from the world's origin, where the eye of every picture is, and rays around them.
+fn from_eye(random: &mut Random, count: usize, distance: f64) -> Batch {
+    each(count, |batch, _| {
+        let center = random.unit() * distance;
+        let target = center + random.in_ball() * 1.3;
+        let direction = target.normalize() * random.within(0.5, 2.0);
+        add(batch, DVec3::ZERO, direction, &[(center, DVec3::ONE)]);
+    })
+}
+
+pub(super) fn ordinary_eye(random: &mut Random, count: usize) -> Batch {
+    from_eye(random, count, 5.0)
+}
+
+pub(super) fn far_3_eye(random: &mut Random, count: usize) -> Batch {
+    from_eye(random, count, 1e3)
+}
+
+pub(super) fn far_5_eye(random: &mut Random, count: usize) -> Batch {
+    from_eye(random, count, 1e5)
+}
+
+pub(super) fn tangent_eye(random: &mut Random, count: usize) -> Batch {
+    each(count, |batch, _| {
+        let direction = random.unit();
+        let l = (1.0 - random.sign() * random.magnitude(-12.0, -2.0)).sqrt();
+        let center = direction * (25.0 - l * l).sqrt() + random.perpendicular(direction) * l;
+        add(batch, DVec3::ZERO, direction, &[(center, DVec3::ONE)]);
+    })
+}
+
 pub(super) fn far_3(random: &mut Random, count: usize) -> Batch {
     at_distance(random, count, 1e3)
 }
