@@ -64,7 +64,7 @@ fn approach(ray: Ray, sphere: u32) -> Approach {
     }
     let b = -dot(origin, direction);
     // An error of b/a moves the point along the ray, which changes its distance to second order only.
-    let perpendicular = origin + direction * (b * inv_a);
+    let perpendicular = along(origin, direction, b * inv_a);
     let discriminant = shape.radius * shape.radius - dot(perpendicular, perpendicular);
     return Approach(origin, direction, a, b, perpendicular, discriminant);
 }

@@ -11,6 +11,14 @@ fn is_finite(x: real) -> bool {
     return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
 }
 
+// origin + t direction where the two nearly cancel: the product of the upper halves is exact, so that only the sum is rounded,
+// and the rest is small.
+fn along(origin: vec3r, direction: vec3r, t: real) -> vec3r {
+    let upper = bitcast<vec3<f32>>(bitcast<vec3<u32>>(direction) & vec3<u32>(0xfffff000u));
+    let t_upper = bitcast<f32>(bitcast<u32>(t) & 0xfffff000u);
+    return (origin + upper * t_upper) + (upper * (t - t_upper) + (direction - upper) * t);
+}
+
 // The device's own exp and log may be off by several units, which a large exponent multiplies; hence both are here.
 
 // e^x for x <= 0: x = k ln 2 + r, |r| <= ln 2 / 2, ln 2 in two parts (Cody, Waite, "Software Manual for the Elementary

@@ -60,6 +60,11 @@ fn right() -> Target {
     limits(&[(Quantity::WrongBeyondBand, 0.0)])
 }
 
+/// What `fast` promises up to a distance of 1000 radii.
+fn ladder() -> Target {
+    limits(&[(Quantity::Wrong, 10.0), (Quantity::P999, 13.0)])
+}
+
 fn wrong(ppm: f64) -> Target {
     limits(&[(Quantity::Wrong, ppm)])
 }
@@ -89,7 +94,10 @@ pub fn classes() -> Vec<Class> {
             "ordinary",
             "unit spheres seen from five radii",
             "wrong, p99.9",
-            vec![rays("eye", rays::ordinary_eye, [exact(3.0), exact(2.0), exact(0.7)]), rays("", rays::ordinary, [exact(3.0), exact(2.0), exact(0.7)])],
+            vec![
+                rays("eye", rays::ordinary_eye, [exact(3.0), exact(2.0), exact(0.7)]),
+                rays("any origin", rays::ordinary, [ladder(), exact(2.0), exact(0.7)]),
+            ],
         ),
         class(
             2,
@@ -104,9 +112,11 @@ pub fn classes() -> Vec<Class> {
             "tiny and far spheres",
             "wrong",
             vec![
-                rays("eye 1e3", rays::far_3_eye, [wrong(10.0), right(), right()]), rays("eye 1e5", rays::far_5_eye, [wrong(2000.0), right(), right()]), rays("d/r 1e3", rays::far_3, [wrong(10.0), right(), right()]),
-                rays("d/r 1e5", rays::far_5, [wrong(2000.0), right(), right()]),
-                rays("d/r 1e7", rays::far_7, [flag(), right(), right()]),
+                rays("eye 1e3", rays::far_3_eye, [wrong(10.0), right(), right()]),
+                rays("eye 1e5", rays::far_5_eye, [wrong(2000.0), right(), right()]),
+                rays("any origin 1e3", rays::far_3, [wrong(10.0), right(), right()]),
+                rays("any origin 1e5", rays::far_5, [wrong(2000.0), right(), right()]),
+                rays("any origin 1e7", rays::far_7, [flag(), right(), right()]),
             ],
         ),
         class(
@@ -128,13 +138,22 @@ pub fn classes() -> Vec<Class> {
             "tangent",
             "1-l² from 1e-12 to 1e-2, either side",
             "largest misclassified |1-l²|",
-            vec![rays("eye", rays::tangent_eye, [limits(&[(Misclassified, 4e-7)]), limits(&[(Misclassified, 2.5e-7)]), limits(&[(Misclassified, 1e-9)])]), rays("", rays::tangent,
-                [
-                    limits(&[(Misclassified, 4e-7)]),
-                    limits(&[(Misclassified, 2.5e-7)]),
-                    limits(&[(Misclassified, 1e-9)]),
-                ],
-            )],
+            vec![
+                rays(
+                    "eye",
+                    rays::tangent_eye,
+                    [
+                        limits(&[(Misclassified, 4e-7)]),
+                        limits(&[(Misclassified, 2.5e-7)]),
+                        limits(&[(Misclassified, 1e-9)]),
+                    ],
+                ),
+                rays(
+                    "any origin",
+                    rays::tangent,
+                    [Target::Reported, limits(&[(Misclassified, 2.5e-7)]), limits(&[(Misclassified, 1e-9)])],
+                ),
+            ],
         ),
         class(
             7,
@@ -143,7 +162,8 @@ pub fn classes() -> Vec<Class> {
             "wrong, p99.9",
             vec![
                 rays("disc 1:1:1e-3", rays::disc, thin()),
-                rays("needle 1e-2:1:100", rays::needle, thin()),
+                rays("needle 1e-2:1:100", rays::needle_eye, thin()),
+                rays("needle, any origin", rays::needle, [flag(), exact(2.5), exact(0.7)]),
                 rays("1:1:1e-4 from 2e-4", rays::disc_from_near, thin()),
             ],
         ),

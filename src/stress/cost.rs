@@ -41,10 +41,6 @@ pub fn cost(gpu: &Gpu, kernels: &[Kernel], count: usize, seed: u64, runs: usize)
         }
     }
     let base = probers.first().map_or(f64::NAN, |(_, sample)| sample.median());
-    let cost = |(prober, ns): (Prober, Sample)| Cost {
-        kernel: prober.kernel().name(),
-        ratio: ns.median() / base,
-        ns,
-    };
+    let cost = |(prober, ns): (Prober, Sample)| Cost { kernel: prober.kernel().name(), ratio: ns.median() / base, ns };
     Ok(probers.into_iter().map(cost).collect())
 }

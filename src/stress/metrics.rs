@@ -5,7 +5,7 @@ use std::fmt;
 use serde::Serialize;
 
 /// 2⁻²³, the unit of relative errors.
-pub const U: f64 = 1.0 / (1_u64 << 23) as f64;
+pub(super) const U: f64 = 1.0 / (1_u64 << 23) as f64;
 
 /// Counts and errors of one case on one kernel. Absent: the case has no such thing.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]

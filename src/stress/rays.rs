@@ -7,7 +7,7 @@ use super::truth::carried;
 use crate::gpu::{Batch, ProbeRay, Surface};
 
 /// Makes a batch of so many rays.
-pub type Generator = fn(&mut Random, usize) -> Batch;
+pub(super) type Generator = fn(&mut Random, usize) -> Batch;
 
 /// Adds a ray with surfaces of its own, all numbers such that two `f32` carry them.
 fn add(batch: &mut Batch, origin: DVec3, direction: DVec3, surfaces: &[(DVec3, DVec3)]) {
@@ -160,6 +160,15 @@ pub(super) fn needle(random: &mut Random, count: usize) -> Batch {
     seen(random, count, DVec3::new(1e-2, 1.0, 100.0))
 }
 
+pub(super) fn needle_eye(random: &mut Random, count: usize) -> Batch {
+    let scale = DVec3::new(1e-2, 1.0, 100.0);
+    each(count, |batch, _| {
+        let center = random.unit() * (5.0 * scale.max_element());
+        let direction = (center + scale * random.in_ball() * 1.2).normalize();
+        add(batch, DVec3::ZERO, direction, &[(center, scale)]);
+    })
+}
+
 pub(super) fn disc_from_near(random: &mut Random, count: usize) -> Batch {
     let scale = DVec3::new(1.0, 1.0, 1e-4);
     each(count, |batch, _| {
@@ -264,7 +273,7 @@ pub(super) fn touching(random: &mut Random, count: usize) -> Batch {
 }
 
 /// What the light of a ray ought to do.
-pub type LitGenerator = fn(&mut Random, usize) -> (Batch, Vec<bool>);
+pub(super) type LitGenerator = fn(&mut Random, usize) -> (Batch, Vec<bool>);
 
 /// A ray from 5 above `place`, where the unit normal is `normal`, and its light 10 away in `to_light`.
 fn view(random: &mut Random, place: DVec3, normal: DVec3) -> (DVec3, DVec3) {

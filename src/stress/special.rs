@@ -163,7 +163,6 @@ pub(super) fn power(prober: &mut Prober, random: &mut Random, count: usize) -> R
             0.0
         };
         metrics.not_finite += u64::from(!answer.value.is_finite() || !answer.finite);
-        if (answer.value - truth).abs() > 1.6e-7 { eprintln!("d {d} n {n} truth {truth} err {:e}", answer.value - truth); }
         worst = worst.max((answer.value - truth).abs());
     }
     metrics.power_error = Some(worst);

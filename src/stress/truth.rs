@@ -28,7 +28,7 @@ fn single(v: DVec3) -> DVec3 {
 
 /// The numbers that the kernel got.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Given {
+pub(super) enum Given {
     /// Rounded to `f32`.
     Rounded,
     /// As they are.
@@ -74,17 +74,17 @@ impl Given {
 
 /// The true nearest hit of a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Expected {
+pub(super) struct Expected {
     /// Its t; NaN where there is none.
-    pub t: f64,
+    pub(super) t: f64,
     /// The surface, by its place in the batch.
-    pub surface: u32,
+    pub(super) surface: u32,
     /// Whether it is the greater root.
-    pub inside: bool,
+    pub(super) inside: bool,
 }
 
 /// The true nearest hit of every ray.
-pub fn expected(batch: &Batch, given: Given) -> Vec<Expected> {
+pub(super) fn expected(batch: &Batch, given: Given) -> Vec<Expected> {
     let nearest = |ray: &ProbeRay| {
         let ray = given.ray(ray);
         let t_min = given.t_min(&ray);
@@ -112,7 +112,7 @@ fn clearance(batch: &Batch, ray: &ProbeRay, surface: u32, given: Given) -> f64 {
 }
 
 /// Compares answers with the truth; `band` is the |1 − l²| below which a tier may be wrong.
-pub fn judge(batch: &Batch, answers: &[Answer], truth: &[Expected], given: Given, band: f64) -> Metrics {
+pub(super) fn judge(batch: &Batch, answers: &[Answer], truth: &[Expected], given: Given, band: f64) -> Metrics {
     let mut metrics = Metrics { count: batch.rays.len() as u64, ..Metrics::default() };
     let mut errors = Vec::with_capacity(answers.len());
     for ((ray, answer), expected) in batch.rays.iter().zip(answers).zip(truth) {
