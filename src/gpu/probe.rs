@@ -59,6 +59,8 @@ pub struct Batch {
     pub surfaces: Vec<Surface>,
     /// The position of each ray's light; empty where none is asked for.
     pub lights: Vec<DVec3>,
+    /// Reflections before the hit that [`Question::Bounce`] asks for.
+    pub bounces: u32,
 }
 
 impl Batch {
@@ -113,6 +115,8 @@ pub enum Question {
     Blocked,
     /// The nearest hit, and whether its light reaches it.
     Lit,
+    /// The hit after so many reflections as the batch says.
+    Bounce,
     /// cosⁿ; the origin's x is 1 − cos, its y is n.
     Power,
     /// The residuals of the error-free sum and product of the origin's x and y.
@@ -125,6 +129,7 @@ impl Question {
             Self::Nearest => "probe_nearest",
             Self::Blocked => "probe_blocked",
             Self::Lit => "probe_lit",
+            Self::Bounce => "probe_bounce",
             Self::Power => "probe_power",
             Self::Transforms => "probe_transforms",
         }
@@ -135,6 +140,7 @@ impl Question {
         let (plain, more): (&[u32], &[u32]) = match self {
             Self::Nearest | Self::Blocked => (&[0, 1, 13, 15, 16, 17], &[9, 14]),
             Self::Lit => (&[0, 1, 2, 3, 13, 15, 16, 17], &[9, 10, 14]),
+            Self::Bounce => (&[0, 1, 2, 13, 15, 16, 17], &[9, 14]),
             Self::Power => (&[13, 16, 17], &[]),
             Self::Transforms => (&[0, 13, 16, 17], &[]),
         };
@@ -212,9 +218,10 @@ impl<'a> Prober<'a> {
             let surfaces = &batch.surfaces[first as usize..end as usize];
             let lights = batch.lights.iter().skip(chunk * MAX_RAYS).take(rays.len());
             let lights: Vec<_> = lights.map(|&position| Light { position, intensity: DVec3::ONE }).collect();
+            let bounces = (question == Question::Bounce).then_some(batch.bounces);
             let inputs = match self.kernel.is_double() {
-                false => pack::<single::Layout>(rays, surfaces, &lights, first),
-                true => pack::<double::Layout>(rays, surfaces, &lights, first),
+                false => pack::<single::Layout>(rays, surfaces, &lights, first, bounces),
+                true => pack::<double::Layout>(rays, surfaces, &lights, first, bounces),
             };
             self.dispatch(question, &inputs, rays.len(), first, &mut answers)?;
         }
@@ -366,7 +373,13 @@ fn reals<L: Layout>(values: impl Iterator<Item = [f64; 6]>, count: usize) -> Vec
     bytes(values.chain(std::iter::repeat_n([0.0; 6], padding)).flatten().map(L::real))
 }
 
-fn pack<L: Layout>(rays: &[ProbeRay], surfaces: &[Surface], lights: &[Light], first: u32) -> Inputs {
+fn pack<L: Layout>(
+    rays: &[ProbeRay],
+    surfaces: &[Surface],
+    lights: &[Light],
+    first: u32,
+    bounces: Option<u32>,
+) -> Inputs {
     let sphere = |s: &Surface| Sphere {
         center: s.center,
         scale: s.scale,
@@ -388,7 +401,7 @@ fn pack<L: Layout>(rays: &[ProbeRay], surfaces: &[Surface], lights: &[Light], fi
     };
     let words = |ray: &ProbeRay| {
         let own = ray.own.map_or(0, |own| own - first + 1);
-        [ray.first - first, ray.end - first, u32::from(!ray.primary), own]
+        [ray.first - first, ray.end - first, bounces.unwrap_or(u32::from(!ray.primary)), own]
     };
     // The kernel reads the light of every invocation, those past the last ray included.
     let padding = rays.len().next_multiple_of(GROUP) - rays.len();

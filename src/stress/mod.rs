@@ -178,7 +178,7 @@ impl Shared {
             Kind::Power => special::power(prober, &mut random, self.count).map(Some),
             Kind::OddLights => picture(pictures::odd_lights),
             Kind::Mirrors => picture(pictures::mirrors),
-            Kind::FacingMirrors => picture(pictures::facing_mirrors),
+            Kind::FacingMirrors => special::facing_mirrors(prober, &mut random, self.count).map(Some),
             Kind::Transforms if kernel.carries_low() => special::transforms(prober, &mut random).map(Some),
             Kind::Transforms => Ok(None),
         }

@@ -96,24 +96,3 @@ pub(super) fn mirrors(gpu: &Gpu, tier: Tier) -> Result<Metrics, Error> {
     metrics.note = "differing: levels above the sum of Kr^k".into();
     Ok(metrics)
 }
-
-/// Class 21: between facing mirrors errors grow about tenfold a bounce; from which bounce on they show.
-pub(super) fn facing_mirrors(gpu: &Gpu, tier: Tier) -> Result<Metrics, Error> {
-    let scene = scene(
-        "SPHERE l -3 0 -9 2.9 2.9 2.9 1 1 1 0 0.4 0.4 1 200\nSPHERE r 3 0 -9 2.9 2.9 2.9 1 1 1 0 0.4 0.4 1 200\n\
-         LIGHT l 0 4 -2 1 1 1\nBACK 0 0 0\nAMBIENT 0 0 0\n",
-    )?;
-    let mut metrics = Metrics { count: u64::from(SIZE * SIZE), ..Metrics::default() };
-    metrics.note = "no difference of a level up to bounce 12".into();
-    for depth in 1..=12 {
-        let settings = Settings { max_depth: depth, ..Settings::exact() };
-        let (rgb, not_finite) = render(gpu, tier, &scene, &settings)?;
-        metrics.not_finite += not_finite;
-        let (expected, _) = reference(&scene, &settings)?;
-        if rgb != expected {
-            metrics.note = format!("levels differ from f64 from bounce {depth} on");
-            break;
-        }
-    }
-    Ok(metrics)
-}

@@ -272,6 +272,23 @@ pub(super) fn touching(random: &mut Random, count: usize) -> Batch {
     batch
 }
 
+/// Rays along the axis between two facing mirrors, close enough to it to be caught for some bounces.
+pub(super) fn between_mirrors(random: &mut Random, count: usize) -> Batch {
+    let mut batch = Batch::default();
+    // Oblique: along an axis of the world rounding would spare the small components.
+    let axis = DVec3::new(0.6, 0.48, 0.64);
+    for side in [-1.0, 1.0] {
+        batch.surfaces.push(Surface { center: carried(axis * (side * 1.5)), scale: DVec3::ONE });
+    }
+    for _ in 0..count {
+        let start = random.in_ball() * 1e-9;
+        let direction = (axis * random.sign() + random.in_ball() * 1e-9).normalize();
+        let (origin, direction) = (carried(start), carried(direction));
+        batch.rays.push(ProbeRay { origin, direction, first: 0, end: 2, primary: false, own: None });
+    }
+    batch
+}
+
 /// What the light of a ray ought to do.
 pub(super) type LitGenerator = fn(&mut Random, usize) -> (Batch, Vec<bool>);
 

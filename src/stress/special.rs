@@ -8,7 +8,8 @@ use super::rays;
 use crate::cpu::{Dd, Real};
 use crate::geometry::Ellipsoid;
 use crate::gpu::layout::ShapeValues;
-use crate::gpu::{Batch, Error, ProbeRay, Prober, Question, RawBatch};
+use crate::gpu::{Batch, Error, Kernel, ProbeRay, Prober, Question, RawBatch};
+use crate::precision::Tier;
 use crate::scene::{Sphere, parse};
 
 /// Class 13: a scale of zero is an error that names its line.
@@ -195,4 +196,40 @@ pub(super) fn transforms(prober: &mut Prober, random: &mut Random) -> Result<Met
         note: format!("residuals lost: {sums} of sums, {products} of products"),
         ..Metrics::default()
     })
+}
+
+/// Class 21: between facing mirrors errors grow about tenfold a bounce; from which bounce on `f32` and `f64` paths differ by
+/// 1e-3.
+pub(super) fn facing_mirrors(prober: &mut Prober, random: &mut Random, count: usize) -> Result<Metrics, Error> {
+    let count = count.min(20_000);
+    let mut metrics = Metrics { count: count as u64, ..Metrics::default() };
+    let mut double = match Prober::new(prober.gpu(), Kernel::Tier(Tier::Double)) {
+        Ok(double) => double,
+        Err(Error::NoDevice(why)) => {
+            metrics.note = why;
+            return Ok(metrics);
+        }
+        Err(error) => return Err(error),
+    };
+    let mut batch = rays::between_mirrors(random, count);
+    metrics.note = "no path differs by 1e-3 up to bounce 16".into();
+    for bounce in 1..=16 {
+        batch.bounces = bounce;
+        let answers = prober.ask(Question::Bounce, &batch)?;
+        let truth = double.ask(Question::Bounce, &batch)?;
+        let pairs = answers.iter().zip(&truth).filter(|(_, truth)| truth.found);
+        let total = pairs.clone().count();
+        let apart =
+            pairs.filter(|(a, b)| !(a.found && a.surface == b.surface && (a.value - b.value).abs() <= 1e-3 * b.value));
+        let apart = apart.count();
+        // Half of them, so that no single grazing path decides.
+        if total > 0 && 2 * apart > total {
+            metrics.note = format!("half of the paths differ from f64 by 1e-3 from bounce {bounce} on");
+            break;
+        }
+        if total == 0 {
+            break;
+        }
+    }
+    Ok(metrics)
 }

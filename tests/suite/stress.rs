@@ -97,7 +97,7 @@ fn batches_find_the_nearest_hit() {
     let batch = Batch {
         rays: vec![ray(0.0, 0, 3), ray(0.0, 0, 1), ray(-5.0, 1, 2), ray(-5.0, 2, 2), ray(-7.0, 0, 2)],
         surfaces: vec![at(-9.0), at(-5.0), at(-20.0)],
-        lights: Vec::new(),
+        ..Batch::default()
     };
     for tier in Tier::ALL {
         let Ok(mut prober) = Prober::new(&gpu, Kernel::Tier(tier)) else { continue };
