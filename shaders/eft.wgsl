@@ -1,15 +1,6 @@
 // Error-free transforms in f32. Compilers may rewrite (a + b) - a to b, factor sums of products and fuse a product into a sum,
-// so results that such a rule could reach pass through barrier(), which costs one instruction; parts cut off by a mask are out
-// of reach as they are. A self-test on the device decides whether it all holds (src/gpu/selftest.rs).
-
-// x, through bits that no compiler knows.
-fn barrier(x: f32) -> f32 {
-    return bitcast<f32>(bitcast<u32>(x) ^ params.zero);
-}
-
-fn barrier3(x: vec3<f32>) -> vec3<f32> {
-    return bitcast<vec3<f32>>(bitcast<vec3<u32>>(x) ^ vec3<u32>(params.zero));
-}
+// so results that such a rule could reach pass through barrier() of barrier.wgsl, which costs one instruction; parts cut off by
+// a mask are out of reach as they are. A self-test on the device decides whether it all holds (src/gpu/selftest.rs).
 
 // hi + lo, lo some units in the last place of hi at most.
 struct Pair {

@@ -13,6 +13,10 @@ override LIGHT_COUNT: u32;
 // Whether leaving a loop over the spheres early pays: not where it is unrolled.
 const MANY: bool = false;
 
+fn first_sphere() -> u32 {
+    return 0u;
+}
+
 fn sphere_count() -> u32 {
     return SPHERE_COUNT;
 }

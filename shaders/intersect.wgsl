@@ -73,7 +73,7 @@ fn accepted_root(ray: Ray, sphere: u32, own: Own, range: Range) -> Root {
 fn nearest_hit(ray: Ray, own: Own, within: Range) -> Hit {
     var range = within;
     var nearest = Hit(false, FAR, 0u, false);
-    for (var sphere = 0u; sphere < sphere_count(); sphere++) {
+    for (var sphere = first_sphere(); sphere < sphere_count(); sphere++) {
         let root = accepted_root(ray, sphere, own, range);
         if root.counts {
             nearest = Hit(true, root.t, sphere, root.inside);
@@ -96,7 +96,7 @@ fn blocks(ray: Ray, sphere: u32, own: Own) -> bool {
 // Whether any sphere stands between the ray's origin and t = 1.
 fn any_hit(ray: Ray, own: Own) -> bool {
     var blocked = false;
-    for (var sphere = 0u; sphere < sphere_count(); sphere++) {
+    for (var sphere = first_sphere(); sphere < sphere_count(); sphere++) {
         blocked |= blocks(ray, sphere, own);
         if MANY && blocked {
             break;

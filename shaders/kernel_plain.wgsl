@@ -64,7 +64,7 @@ fn approach(ray: Ray, sphere: u32) -> Approach {
     }
     let b = -dot(origin, direction);
     // An error of b/a moves the point along the ray, which changes its distance to second order only.
-    let perpendicular = origin + direction * (b * inv_a);
+    let perpendicular = along(origin, direction, b * inv_a);
     let discriminant = shape.radius * shape.radius - dot(perpendicular, perpendicular);
     return Approach(origin, direction, a, b, perpendicular, discriminant);
 }
@@ -97,10 +97,12 @@ fn root_between(ray: Ray, sphere: u32, t_min: real) -> bool {
     let radius = shapes[sphere].radius;
     let start = at.origin + at.direction * t_min;
     let end = at.origin + at.direction;
+    let end_squared = dot(end, end);
     let starts_outside = dot(start, start) > radius * radius;
-    let ends_outside = dot(end, end) > radius * radius;
-    let passes = starts_outside && ends_outside && at.b > at.a * t_min && at.b < at.a;
-    return at.discriminant >= real(0.0) && (starts_outside != ends_outside || passes);
+    let crosses = select(end_squared > radius * radius, end_squared < radius * radius, starts_outside);
+    // An end on the very surface is not beyond it.
+    let passes = starts_outside && end_squared >= radius * radius && at.b > at.a * t_min && at.b < at.a;
+    return at.discriminant >= real(0.0) && (crosses || passes);
 }
 
 // The hit in object space: from the closest approach half a chord back or forth, since S' + t c' would lose what distance costs.

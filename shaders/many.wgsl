@@ -9,6 +9,10 @@
 // Whether leaving a loop over the spheres early pays.
 const MANY: bool = true;
 
+fn first_sphere() -> u32 {
+    return 0u;
+}
+
 fn sphere_count() -> u32 {
     return params.sphere_count;
 }

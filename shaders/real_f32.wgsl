@@ -11,14 +11,45 @@ fn is_finite(x: real) -> bool {
     return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
 }
 
-// ln(1 - d) for d in [0, 1): a series where 1 - d would lose the digits of d.
-fn log1m(d: real) -> real {
-    if d < 0.05 {
-        return -d * (1.0 + d * (1.0 / 2.0 + d * (1.0 / 3.0 + d * (1.0 / 4.0 + d * (1.0 / 5.0 + d * (1.0 / 6.0))))));
-    }
-    return log(1.0 - d);
+// origin + t direction where the two nearly cancel: the product of the upper halves is exact, so that only the sum is rounded,
+// and the rest is small.
+fn along(origin: vec3r, direction: vec3r, t: real) -> vec3r {
+    let upper = bitcast<vec3<f32>>(bitcast<vec3<u32>>(direction) & vec3<u32>(0xfffff000u));
+    let t_upper = bitcast<f32>(bitcast<u32>(t) & 0xfffff000u);
+    return (origin + upper * t_upper) + (upper * (t - t_upper) + (direction - upper) * t);
 }
 
+// The device's own exp and log may be off by several units, which a large exponent multiplies; hence both are here.
+
+// e^x for x <= 0: x = k ln 2 + r, |r| <= ln 2 / 2, ln 2 in two parts (Cody, Waite, "Software Manual for the Elementary
+// Functions", 1980), then the Taylor series of e^r to r^7 / 7!, which leaves 6e-9.
 fn exponential(x: real) -> real {
-    return exp(x);
+    if !(x > -87.0) {
+        return 0.0;
+    }
+    let k = floor(x * 1.442695 + 0.5);
+    let r = (x - k * 0.693359375) + k * 2.12194440e-4;
+    let series = 1.0 / 24.0 + r * (1.0 / 120.0 + r * (1.0 / 720.0 + r * (1.0 / 5040.0)));
+    let power = 1.0 + (r + r * r * (1.0 / 2.0 + r * (1.0 / 6.0 + r * series)));
+    return power * bitcast<f32>(u32(i32(k) + 127) << 23u);
+}
+
+// ln(1 - d) for d in [0, 1). 1 - d = 2^k m with m in [0.7, 1.4], ln m = 2 atanh(s), s = (m - 1)/(m + 1); for small d
+// s = -d / (2 - d) without rounding 1 - d. The series of atanh to s^9 leaves 3e-9.
+fn log1m(d: real) -> real {
+    var s = -d / (2.0 - d);
+    var k = 0;
+    if d > 0.3 {
+        let bits = bitcast<u32>(1.0 - d);
+        k = i32(bits >> 23u) - 127;
+        var m = bitcast<f32>((bits & 0x007fffffu) | 0x3f800000u);
+        if m > 1.4 {
+            m *= 0.5;
+            k += 1;
+        }
+        s = (m - 1.0) / (m + 1.0);
+    }
+    let s2 = s * s;
+    let sum = s2 * (1.0 / 3.0 + s2 * (1.0 / 5.0 + s2 * (1.0 / 7.0 + s2 * (1.0 / 9.0))));
+    return 2.0 * (s + s * sum) + f32(k) * 0.69314718;
 }

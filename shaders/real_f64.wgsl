@@ -11,6 +11,11 @@ fn is_finite(x: real) -> bool {
     return abs(x) <= 1e308lf;
 }
 
+// origin + t direction.
+fn along(origin: vec3r, direction: vec3r, t: real) -> vec3r {
+    return origin + direction * t;
+}
+
 const LN_2_HIGH: real = 6.93147180369123816490e-01lf;
 const LN_2_LOW: real = 1.90821492927058770002e-10lf;
 

@@ -9,6 +9,9 @@ fn reflection_ray(surface: Surface) -> Ray {
 // Not the index of any shape: a primary ray leaves no sphere.
 const NO_SHAPE: u32 = 0xffffffffu;
 
+// Mirrors with Kr > 1 amplify no further, or products would overflow; whatever is lit at all is white long before.
+const MAX_THROUGHPUT: real = real(1e30);
+
 // The unclamped colour seen along the ray.
 fn trace(primary: Ray) -> vec3r {
     var own = Own(NO_SHAPE, false, vec3r());
@@ -34,7 +37,7 @@ fn trace(primary: Ray) -> vec3r {
             break;
         }
         depth += 1u;
-        throughput *= kr;
+        throughput = min(throughput * kr, MAX_THROUGHPUT);
         ray = reflection_ray(surface);
         own = surface.own;
         if COUNT_RAYS {

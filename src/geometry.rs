@@ -65,6 +65,11 @@ pub fn ellipsoids(scene: &Scene, true_axes: bool) -> Vec<Ellipsoid> {
 /// Worlds whose greatest coordinate lies within this range keep their squares within the range of `f32` as they are.
 const COMMON_EXTENT: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 
+/// The power of two by which a world with this greatest coordinate is multiplied so that squared lengths stay within `f32`.
+pub fn range_factor(greatest: f64) -> f64 {
+    if COMMON_EXTENT.contains(&greatest) { 1.0 } else { reciprocal_power_of_two(greatest) }
+}
+
 /// The scene in units in which squared lengths neither overflow nor underflow in `f32`: multiplied by a power of two, which
 /// changes no digit, no root and no pixel. Distances in the settings follow.
 pub fn in_range<'a>(scene: &'a Scene, settings: &Settings) -> (Cow<'a, Scene>, Settings) {
@@ -74,10 +79,10 @@ pub fn in_range<'a>(scene: &'a Scene, settings: &Settings) -> (Cow<'a, Scene>, S
     let Window { near, left, right, bottom, top } = scene.window;
     let window = [near, left.abs(), right.abs(), bottom.abs(), top.abs()];
     let greatest = spheres.chain(lights).chain(window).fold(0.0, f64::max);
-    if COMMON_EXTENT.contains(&greatest) {
+    let k = range_factor(greatest);
+    if k == 1.0 {
         return (Cow::Borrowed(scene), *settings);
     }
-    let k = reciprocal_power_of_two(greatest);
     let mut scene = scene.clone();
     let [near, left, right, bottom, top] = [near, left, right, bottom, top].map(|x| x * k);
     scene.window = Window { near, left, right, bottom, top };

@@ -17,5 +17,6 @@ pub mod gpu;
 pub mod precision;
 pub mod scene;
 pub mod settings;
+pub mod stress;
 pub mod study;
 pub mod tiles;

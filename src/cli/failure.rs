@@ -9,6 +9,8 @@ use crate::gpu;
 pub(super) const OK: u8 = 0;
 /// `compare`: the pictures differ by more than the limits.
 pub(super) const DIFFERENT: u8 = 1;
+/// `stress`: a promise is broken on this device.
+pub(super) const BROKEN: u8 = 1;
 /// The arguments make no sense; for `compare` any trouble.
 pub(super) const USAGE: u8 = 2;
 /// The scene cannot be read or has errors.

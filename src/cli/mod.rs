@@ -9,6 +9,7 @@ mod options;
 mod progress;
 mod render;
 mod stats;
+mod stress;
 mod study;
 
 use std::process::ExitCode;
@@ -26,7 +27,7 @@ use clap::{Parser, Subcommand};
     subcommand_negates_reqs = true,
     arg_required_else_help = true,
     after_help = "Exit codes: 0 ok, 2 usage, 3 scene, 4 no device, 5 device lost, 6 output.\n\
-                  compare: 0 same, 1 different, 2 trouble.\n\
+                  compare: 0 same, 1 different, 2 trouble. stress: 1 a promise is broken.\n\
                   Environment: WGPU_ADAPTER_NAME, WGPU_POWER_PREF, WGPU_BACKEND, VK_DRIVER_FILES are honoured."
 )]
 struct Cli {
@@ -46,6 +47,8 @@ enum Command {
     Check(check::Args),
     /// Measure what accuracy and effects cost in time on a scene
     Study(study::Args),
+    /// Check on this device what each tier promises of hard cases
+    Stress(stress::Args),
     /// List the Vulkan devices
     Devices(devices::Args),
 }
@@ -72,6 +75,7 @@ pub fn run() -> ExitCode {
         Some(Command::Compare(args)) => compare::run(&args),
         Some(Command::Check(args)) => check::run(&args),
         Some(Command::Study(args)) => study::run(&args),
+        Some(Command::Stress(args)) => stress::run(&args),
         Some(Command::Devices(args)) => devices::run(&args),
     };
     ExitCode::from(code)

@@ -145,10 +145,12 @@ pub(crate) fn blocks<T: Real>(ray: &Ray<T>, shape: &Shape<T>, own: Option<&Own<T
     let at = approach(ray, shape);
     let start = at.origin + at.direction * t_min;
     let end = at.origin + at.direction;
-    let starts_outside = start.dot(start) > shape.radius * shape.radius;
-    let ends_outside = end.dot(end) > shape.radius * shape.radius;
-    let passes = starts_outside && ends_outside && at.b > at.a * t_min && at.b < at.a;
-    at.discriminant >= T::ZERO && (starts_outside != ends_outside || passes)
+    let (end_squared, radius_squared) = (end.dot(end), shape.radius * shape.radius);
+    let starts_outside = start.dot(start) > radius_squared;
+    let crosses = if starts_outside { end_squared < radius_squared } else { end_squared > radius_squared };
+    // An end on the very surface is not beyond it.
+    let passes = starts_outside && end_squared >= radius_squared && at.b > at.a * t_min && at.b < at.a;
+    at.discriminant >= T::ZERO && (crosses || passes)
 }
 
 /// Whether any sphere stands between the ray's origin and t = 1.

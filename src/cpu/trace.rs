@@ -7,6 +7,9 @@ use super::shade::{Surface, local_color, surface_at};
 use super::vec3::Vec3;
 use super::witness::Witness;
 
+/// Mirrors with Kr > 1 amplify no further, or products would overflow; whatever is lit at all is white long before.
+const MAX_THROUGHPUT: f64 = 1e30;
+
 /// The unclamped colour seen along `primary`.
 pub(crate) fn trace<T: Real, W: Witness<T>>(world: &World<T>, primary: Ray<T>, witness: &mut W) -> Vec3<T> {
     let mut ray = primary;
@@ -30,6 +33,9 @@ pub(crate) fn trace<T: Real, W: Witness<T>>(world: &World<T>, primary: Ray<T>, w
         }
         depth += 1;
         throughput *= kr;
+        if throughput > T::from_f64(MAX_THROUGHPUT) {
+            throughput = T::from_f64(MAX_THROUGHPUT);
+        }
         ray = reflection_ray(&surface);
         let own = world.skip_self.then_some(&surface.own);
         hit = nearest_hit(world, &ray, own, world.reflection);

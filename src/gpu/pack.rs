@@ -80,19 +80,9 @@ fn pack<L: Layout>(scene: &Scene, settings: &Settings, effects: &Effects, with_l
         let low = values.iter().filter(|_| with_low).map(|&x| L::residual(x));
         bytes(values.iter().copied().chain(low).map(L::real))
     };
-    let low = || {
-        let residual = |v: DVec3| DVec3::from_array(v.to_array().map(L::residual));
-        let shape = |s: &ShapeValues| ShapeValues {
-            center: residual(s.center),
-            radius: L::residual(s.radius),
-            inv_scale: residual(s.inv_scale),
-            index: s.index,
-        };
-        let light = |light: &Light| Light { position: residual(light.position), ..*light };
-        Low {
-            shapes: bytes(shapes.iter().map(|s| L::shape(&shape(s)))),
-            lights: bytes(scene.lights.iter().map(|l| L::light(&light(l)))),
-        }
+    let low = || Low {
+        shapes: bytes(shapes.iter().map(|s| L::shape(&low_shape::<L>(s)))),
+        lights: bytes(scene.lights.iter().map(|l| L::light(&low_light::<L>(l)))),
     };
     Packed {
         params: bytes([L::params(&params)]),
@@ -107,9 +97,29 @@ fn pack<L: Layout>(scene: &Scene, settings: &Settings, effects: &Effects, with_l
     }
 }
 
+/// What rounding to the layout's scalar takes from `v`.
+fn residual<L: Layout>(v: DVec3) -> DVec3 {
+    DVec3::from_array(v.to_array().map(L::residual))
+}
+
+/// What rounding takes from a shape.
+pub(super) fn low_shape<L: Layout>(shape: &ShapeValues) -> ShapeValues {
+    ShapeValues {
+        center: residual::<L>(shape.center),
+        radius: L::residual(shape.radius),
+        inv_scale: residual::<L>(shape.inv_scale),
+        index: shape.index,
+    }
+}
+
+/// What rounding takes from a light's position.
+pub(super) fn low_light<L: Layout>(light: &Light) -> Light {
+    Light { position: residual::<L>(light.position), ..*light }
+}
+
 /// What the intersection reads of each sphere; without the way into object space, what is exact there, a power of two, goes
 /// into the radius.
-fn shape_values(ellipsoids: &[Ellipsoid], indices: Vec<u32>, object_space: bool) -> Vec<ShapeValues> {
+pub(super) fn shape_values(ellipsoids: &[Ellipsoid], indices: Vec<u32>, object_space: bool) -> Vec<ShapeValues> {
     let value = |(ellipsoid, index): (&Ellipsoid, u32)| {
         let (inv_scale, radius) = if object_space {
             (ellipsoid.inv_scale, ellipsoid.radius)
@@ -121,7 +131,7 @@ fn shape_values(ellipsoids: &[Ellipsoid], indices: Vec<u32>, object_space: bool)
     ellipsoids.iter().zip(indices).map(value).collect()
 }
 
-fn bytes<T: Pod>(values: impl IntoIterator<Item = T>) -> Vec<u8> {
+pub(super) fn bytes<T: Pod>(values: impl IntoIterator<Item = T>) -> Vec<u8> {
     let mut bytes = Vec::new();
     for value in values {
         bytes.extend_from_slice(bytemuck::bytes_of(&value));

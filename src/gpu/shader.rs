@@ -19,22 +19,75 @@ macro_rules! part {
     };
 }
 
-/// The scalar of `tier` and what the host packs.
-fn data_parts(tier: Tier, few: bool) -> Vec<Part> {
+/// What intersects rays with spheres: a tier, or what goes wrong without its care.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Kernel {
+    /// The kernel of a tier, which renders.
+    Tier(Tier),
+    /// The schoolbook formula in `f32`: for study only.
+    Schoolbook,
+    /// The robust kernel whose error-free transforms are left to the compiler: for study only.
+    NoBarrier,
+}
+
+impl Kernel {
+    /// The name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Tier(tier) => tier.name(),
+            Self::Schoolbook => "schoolbook",
+            Self::NoBarrier => "no-barrier",
+        }
+    }
+
+    /// Whether numbers carry what rounding took from them.
+    pub fn carries_low(self) -> bool {
+        matches!(self, Self::Tier(Tier::Robust) | Self::NoBarrier)
+    }
+
+    /// Whether it calculates in `f64`.
+    pub fn is_double(self) -> bool {
+        self == Self::Tier(Tier::Double)
+    }
+}
+
+/// How spheres and lights reach the kernel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Storage {
+    /// In uniform buffers, their number compiled in.
+    Few,
+    /// In storage buffers.
+    Many,
+    /// In storage buffers, a range for each ray.
+    Ranges,
+}
+
+/// The scalar of the kernel and what the host packs.
+fn data_parts(kernel: Kernel, storage: Storage) -> Vec<Part> {
     vec![
-        if tier == Tier::Double { part!("real_f64.wgsl") } else { part!("real_f32.wgsl") },
+        if kernel.is_double() { part!("real_f64.wgsl") } else { part!("real_f32.wgsl") },
         part!("types.wgsl"),
-        if few { part!("few.wgsl") } else { part!("many.wgsl") },
+        match storage {
+            Storage::Few => part!("few.wgsl"),
+            Storage::Many => part!("many.wgsl"),
+            Storage::Ranges => part!("ranges.wgsl"),
+        },
     ]
 }
 
 /// The parts that intersect rays with spheres, in order.
-fn intersection_parts(tier: Tier, few: bool) -> Vec<Part> {
+fn intersection_parts(kernel: Kernel, storage: Storage) -> Vec<Part> {
     let mut parts = vec![part!("effects.wgsl")];
-    parts.extend(data_parts(tier, few));
-    match tier {
-        Tier::Fast | Tier::Double => parts.push(part!("kernel_plain.wgsl")),
-        Tier::Robust => parts.extend([part!("eft.wgsl"), part!("kernel_robust.wgsl")]),
+    parts.extend(data_parts(kernel, storage));
+    match kernel {
+        Kernel::Tier(Tier::Fast | Tier::Double) => parts.push(part!("kernel_plain.wgsl")),
+        Kernel::Tier(Tier::Robust) => {
+            parts.extend([part!("barrier.wgsl"), part!("eft.wgsl"), part!("kernel_robust.wgsl")]);
+        }
+        Kernel::NoBarrier => {
+            parts.extend([part!("barrier_none.wgsl"), part!("eft.wgsl"), part!("kernel_robust.wgsl")]);
+        }
+        Kernel::Schoolbook => parts.push(part!("kernel_schoolbook.wgsl")),
     }
     parts.push(part!("intersect.wgsl"));
     parts
@@ -51,20 +104,34 @@ pub struct Module {
 impl Module {
     /// The module that renders tiles at `tier`, for few spheres and lights or for any number.
     pub fn render(tier: Tier, few: bool) -> Self {
-        let mut parts = intersection_parts(tier, few);
+        let mut parts = intersection_parts(Kernel::Tier(tier), if few { Storage::Few } else { Storage::Many });
         parts.extend([part!("shade.wgsl"), part!("trace.wgsl"), part!("main.wgsl")]);
         Self::join(parts)
     }
 
     /// The module that tries error-free transforms.
     pub fn selftest() -> Self {
-        Self::join(vec![part!("real_f32.wgsl"), part!("types.wgsl"), part!("eft.wgsl"), part!("selftest.wgsl")])
+        Self::join(vec![
+            part!("real_f32.wgsl"),
+            part!("types.wgsl"),
+            part!("barrier.wgsl"),
+            part!("eft.wgsl"),
+            part!("selftest.wgsl"),
+        ])
     }
 
     /// The module that writes back what it reads.
     pub fn echo(tier: Tier) -> Self {
-        let mut parts = data_parts(tier, false);
+        let mut parts = data_parts(Kernel::Tier(tier), Storage::Many);
         parts.push(part!("echo.wgsl"));
+        Self::join(parts)
+    }
+
+    /// The module that sends batches of rays through `kernel`.
+    pub fn probe(kernel: Kernel) -> Self {
+        let mut parts = intersection_parts(kernel, Storage::Ranges);
+        parts.extend([part!("shade.wgsl"), part!("trace.wgsl"), part!("probe.wgsl")]);
+        parts.push(if kernel.carries_low() { part!("probe_robust.wgsl") } else { part!("probe_plain.wgsl") });
         Self::join(parts)
     }
 

@@ -15,5 +15,6 @@ mod oracle;
 mod parse;
 mod pictures;
 mod shaders;
+mod stress;
 mod support;
 mod tiles;

@@ -1,0 +1,103 @@
+// Rays in batches through the code that renders: src/gpu/probe.rs.
+
+// Six numbers a ray: origin and direction.
+@group(0) @binding(13) var<storage, read> probe_reals: array<real>;
+// First sphere, one past the last, which range of roots, and one more than the index of the own sphere or 0.
+@group(0) @binding(15) var<storage, read> probe_words: array<vec4<u32>>;
+// Bits of what was found, and the sphere.
+@group(0) @binding(16) var<storage, read_write> probe_flags: array<vec2<u32>>;
+// The root or another real number.
+@group(0) @binding(17) var<storage, read_write> probe_values: array<real>;
+
+const PROBE_FOUND: u32 = 1u;
+const PROBE_INSIDE: u32 = 2u;
+const PROBE_FINITE: u32 = 4u;
+const PROBE_FACING: u32 = 8u;
+const PROBE_BLOCKED: u32 = 16u;
+
+fn probe_vector(at: u32) -> vec3r {
+    return vec3r(probe_reals[at], probe_reals[at + 1u], probe_reals[at + 2u]);
+}
+
+// Sets the ray's spheres; its own one, whose outside it leaves.
+fn probe_own(words: vec4<u32>) -> Own {
+    first_of_range = words.x;
+    end_of_range = words.y;
+    if words.w == 0u {
+        return Own(NO_SHAPE, false, vec3r());
+    }
+    return Own(shapes[words.w - 1u].index, false, vec3r());
+}
+
+fn probe_hit(ray: Ray, words: vec4<u32>) -> Hit {
+    let own = probe_own(words);
+    var range = reflection_range();
+    if words.z == 0u {
+        range = primary_range();
+    }
+    return nearest_hit(ray, own, range);
+}
+
+fn hit_bits(hit: Hit) -> u32 {
+    return select(0u, PROBE_FOUND, hit.found) | select(0u, PROBE_INSIDE, hit.inside)
+        | select(0u, PROBE_FINITE, is_finite(hit.t));
+}
+
+// The nearest hit.
+@compute @workgroup_size(64)
+fn probe_nearest(@builtin(global_invocation_id) id: vec3<u32>) {
+    let hit = probe_hit(probe_ray(id.x), probe_words[id.x]);
+    probe_flags[id.x] = vec2<u32>(hit_bits(hit), hit.sphere);
+    probe_values[id.x] = hit.t;
+}
+
+// Whether something stands between the origin and t = 1.
+@compute @workgroup_size(64)
+fn probe_blocked(@builtin(global_invocation_id) id: vec3<u32>) {
+    let blocked = any_hit(probe_ray(id.x), probe_own(probe_words[id.x]));
+    probe_flags[id.x] = vec2<u32>(select(0u, PROBE_BLOCKED, blocked), 0u);
+    probe_values[id.x] = real(0.0);
+}
+
+// The nearest hit, whether it faces the ray's own light, N.L, and whether something stands between.
+@compute @workgroup_size(64)
+fn probe_lit(@builtin(global_invocation_id) id: vec3<u32>) {
+    let ray = probe_ray(id.x);
+    let hit = probe_hit(ray, probe_words[id.x]);
+    var bits = hit_bits(hit);
+    var n_dot_l = real(0.0);
+    if hit.found {
+        let surface = surface_at(ray, hit);
+        let shadow_ray = ray_to_light(surface.position, id.x);
+        n_dot_l = dot(surface.normal, direction_of(shadow_ray) * (real(1.0) / sqrt(shadow_ray.a)));
+        bits |= select(0u, PROBE_FACING, n_dot_l > real(0.0));
+        bits |= select(0u, PROBE_BLOCKED, any_hit(shadow_ray, surface.own));
+    }
+    probe_flags[id.x] = vec2<u32>(bits, hit.sphere);
+    probe_values[id.x] = n_dot_l;
+}
+
+// The hit after as many reflections as the ray's third word says.
+@compute @workgroup_size(64)
+fn probe_bounce(@builtin(global_invocation_id) id: vec3<u32>) {
+    let words = probe_words[id.x];
+    var own = probe_own(words);
+    var ray = probe_ray(id.x);
+    var hit = nearest_hit(ray, own, reflection_range());
+    for (var bounce = 0u; bounce < words.z && hit.found; bounce++) {
+        let surface = surface_at(ray, hit);
+        ray = reflection_ray(surface);
+        own = surface.own;
+        hit = nearest_hit(ray, own, reflection_range());
+    }
+    probe_flags[id.x] = vec2<u32>(hit_bits(hit), hit.sphere);
+    probe_values[id.x] = hit.t;
+}
+
+// The specular power of d and n.
+@compute @workgroup_size(64)
+fn probe_power(@builtin(global_invocation_id) id: vec3<u32>) {
+    let power = specular_power(probe_reals[6u * id.x], probe_reals[6u * id.x + 1u]);
+    probe_flags[id.x] = vec2<u32>(select(0u, PROBE_FINITE, is_finite(power)), 0u);
+    probe_values[id.x] = power;
+}

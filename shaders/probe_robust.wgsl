@@ -1,0 +1,21 @@
+// Rays of a batch with what rounding took from them.
+
+@group(0) @binding(14) var<storage, read> probe_low: array<real>;
+
+fn probe_vector_low(at: u32) -> vec3r {
+    return vec3r(probe_low[at], probe_low[at + 1u], probe_low[at + 2u]);
+}
+
+fn probe_ray(index: u32) -> Ray {
+    let origin = Pair3(probe_vector(6u * index), probe_vector_low(6u * index));
+    return ray_with(origin, Pair3(probe_vector(6u * index + 3u), probe_vector_low(6u * index + 3u)));
+}
+
+// The residuals of the error-free sum and product of two numbers.
+@compute @workgroup_size(64)
+fn probe_transforms(@builtin(global_invocation_id) id: vec3<u32>) {
+    let a = probe_reals[6u * id.x];
+    let b = probe_reals[6u * id.x + 1u];
+    probe_flags[id.x] = vec2<u32>(bitcast<u32>(two_sum(a, b).lo), bitcast<u32>(two_product(a, b).lo));
+    probe_values[id.x] = real(0.0);
+}

@@ -1,0 +1,158 @@
+//! `trueray stress`.
+
+use std::str::FromStr;
+use std::time::Instant;
+
+use serde::Serialize;
+
+use super::failure::{BROKEN, Failure, OK, OUTPUT, USAGE};
+use crate::gpu::{Choice, Gpu, Kernel};
+use crate::precision::Tier;
+use crate::stress::{Class, Row, classes, cost, run as run_classes, table};
+
+/// Arguments of `trueray stress`.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Each kernel is checked against double-double truth for the very numbers that it got, and judged by \
+                        what its tier promises. schoolbook (judged as fast) and no-barrier (judged as robust) are what goes \
+                        wrong without care; they run only when asked for by name, and then count like the others.\n\
+                        Exit codes: 0 every promise holds, 1 one is broken on this device, 2 usage, 4 no device or none that \
+                        has the kernel, 5 device lost."
+)]
+pub(super) struct Args {
+    /// List the classes
+    #[arg(long)]
+    list: bool,
+    /// Classes by name or number; all without it
+    #[arg(long, value_name = "NAME|ID", value_delimiter = ',')]
+    class: Vec<String>,
+    /// Kernels: fast, robust, double, all (these three), schoolbook, no-barrier
+    #[arg(long, value_name = "KERNEL", value_delimiter = ',', default_value = "all")]
+    precision: Vec<Selected>,
+    /// Vulkan device: auto, gpu, an index of `trueray devices`, part of a name or driver, or a PCI id
+    #[arg(long, value_name = "DEVICE", default_value = "auto")]
+    device: Choice,
+    /// Rays of each case
+    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u32).range(64..=10_000_000))]
+    count: u32,
+    /// Seed of the random numbers
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    seed: u64,
+    /// Measure instead what a ray-ellipsoid test costs on each kernel, in turn, this many times
+    #[arg(long, value_name = "RUNS", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    time: Option<u32>,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Kernels by one name.
+#[derive(Debug, Clone)]
+struct Selected(Vec<Kernel>);
+
+impl FromStr for Selected {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "all" {
+            return Ok(Self(Tier::ALL.map(Kernel::Tier).to_vec()));
+        }
+        let all = Tier::ALL.map(Kernel::Tier).into_iter().chain([Kernel::Schoolbook, Kernel::NoBarrier]);
+        let kernel = all.into_iter().find(|kernel| kernel.name() == text);
+        kernel.map(|kernel| Self(vec![kernel])).ok_or_else(|| {
+            "expected fast, robust, double, all, schoolbook or no-barrier, or several with commas between".into()
+        })
+    }
+}
+
+/// What `--json` prints.
+#[derive(Debug, Serialize)]
+struct Report {
+    device: String,
+    count: u32,
+    seed: u64,
+    seconds: f64,
+    broken: usize,
+    rows: Vec<Row>,
+}
+
+pub(super) fn run(args: &Args) -> u8 {
+    match stress(args) {
+        Ok(code) => code,
+        Err(failure) => failure.report(),
+    }
+}
+
+fn selected_classes(names: &[String]) -> Result<Vec<Class>, Failure> {
+    let mut all = classes();
+    for name in names {
+        if !all.iter().any(|class| class.name == name || class.id.to_string() == *name) {
+            let message = format!("there is no class '{name}'; `trueray stress --list` names them all");
+            return Err(Failure::new(USAGE, message));
+        }
+    }
+    all.retain(|class| names.is_empty() || names.iter().any(|n| class.name == n || class.id.to_string() == *n));
+    Ok(all)
+}
+
+fn stress(args: &Args) -> Result<u8, Failure> {
+    let classes = selected_classes(&args.class)?;
+    if args.list {
+        for class in &classes {
+            println!("{:>2} {:<15} {} ({})", class.id, class.name, class.about, class.counted);
+        }
+        return Ok(OK);
+    }
+    if args.device == Choice::Cpu {
+        return Err(Failure::new(
+            USAGE,
+            "stress checks a Vulkan device; the CPU reference is what it is checked against",
+        ));
+    }
+    let gpu = Gpu::open(&args.device)?;
+    let mut kernels: Vec<Kernel> = Vec::new();
+    for kernel in args.precision.iter().flat_map(|selected| &selected.0) {
+        if !kernels.contains(kernel) {
+            kernels.push(*kernel);
+        }
+    }
+    if let Some(runs) = args.time {
+        return time(args, &gpu, &kernels, runs as usize);
+    }
+    let start = Instant::now();
+    if !args.json {
+        println!("{}, {} rays a case, seed {}", gpu.info, args.count, args.seed);
+        print!("{}", table(&[]));
+    }
+    let rows = run_classes(&gpu, &kernels, &classes, args.count as usize, args.seed, |row| {
+        if !args.json {
+            // Without the head.
+            table(std::slice::from_ref(row)).lines().skip(1).for_each(|line| println!("{line}"));
+        }
+    })?;
+    let broken = rows.iter().filter(|row| row.is_broken()).count();
+    let seconds = start.elapsed().as_secs_f64();
+    if args.json {
+        let report = Report { device: gpu.info.to_string(), count: args.count, seed: args.seed, seconds, broken, rows };
+        println!("{}", serde_json::to_string_pretty(&report).map_err(|e| Failure::new(OUTPUT, e.to_string()))?);
+    } else {
+        println!("{} promises broken, {seconds:.1} s", if broken == 0 { "no".to_owned() } else { broken.to_string() });
+    }
+    Ok(if broken == 0 { OK } else { BROKEN })
+}
+
+/// The cost of a test on each kernel.
+fn time(args: &Args, gpu: &Gpu, kernels: &[Kernel], runs: usize) -> Result<u8, Failure> {
+    let costs = cost(gpu, kernels, args.count as usize, args.seed, runs)?;
+    if args.json {
+        println!("{}", serde_json::to_string_pretty(&costs).map_err(|e| Failure::new(OUTPUT, e.to_string()))?);
+        return Ok(OK);
+    }
+    println!("{}, {} rays against 32 spheres, {runs} runs in turn", gpu.info, args.count);
+    println!("{:<10} {:>10} {:>16} {:>13}", "kernel", "ns a test", "min … max", "× schoolbook");
+    for cost in &costs {
+        let range = format!("{:.2} … {:.2}", cost.ns.min(), cost.ns.max());
+        println!("{:<10} {:>10.2} {range:>16} {:>13.2}", cost.kernel, cost.ns.median(), cost.ratio);
+    }
+    Ok(OK)
+}

@@ -1,0 +1,440 @@
+//! Rays in batches through the very code that renders: the same shader files with the entry points of `shaders/probe.wgsl`.
+
+use std::collections::HashMap;
+use std::time::{Duration, Instant};
+
+use glam::DVec3;
+use wgpu::util::DeviceExt;
+
+use super::device::Gpu;
+use super::error::Error;
+use super::layout::{Layout, ParamValues, ShapeValues, double, single};
+use super::pack::{bytes, low_light, low_shape, shape_values};
+use super::pipeline::Specialisation;
+use super::readable::Readable;
+use super::shader::{Kernel, Module};
+use crate::camera::NEAR_T_MIN;
+use crate::effects::EffectSet;
+use crate::geometry::{Ellipsoid, range_factor, shape_indices};
+use crate::precision::Tier;
+use crate::scene::{Light, Sphere};
+
+/// Rays of a dispatch at the most: some milliseconds on the slowest device seen.
+const MAX_RAYS: usize = 1 << 16;
+/// Invocations of a workgroup, as in `shaders/probe.wgsl`.
+const GROUP: usize = 64;
+
+/// One ray and what it can meet.
+#[derive(Debug, Clone, Copy)]
+pub struct ProbeRay {
+    /// Where t is 0.
+    pub origin: DVec3,
+    /// One unit of t; need not be normalised.
+    pub direction: DVec3,
+    /// First sphere of the batch that it can meet.
+    pub first: u32,
+    /// One past the last.
+    pub end: u32,
+    /// Whether roots count beyond the image plane at t = 1 only, and not from t > 0 on.
+    pub primary: bool,
+    /// The sphere whose outside it leaves.
+    pub own: Option<u32>,
+}
+
+/// An ellipsoid with axes along those of the world.
+#[derive(Debug, Clone, Copy)]
+pub struct Surface {
+    /// Its centre.
+    pub center: DVec3,
+    /// Its semi-axes; a negative one means its absolute value.
+    pub scale: DVec3,
+}
+
+/// Rays, the surfaces that they can meet and, where asked for, the light of each.
+#[derive(Debug, Clone, Default)]
+pub struct Batch {
+    /// The rays.
+    pub rays: Vec<ProbeRay>,
+    /// The surfaces; those of a ray lie beside each other, and near those of the next ray.
+    pub surfaces: Vec<Surface>,
+    /// The position of each ray's light; empty where none is asked for.
+    pub lights: Vec<DVec3>,
+    /// Reflections before the hit that [`Question::Bounce`] asks for.
+    pub bounces: u32,
+}
+
+impl Batch {
+    /// The batch in the units in which a picture of this world is rendered; no t changes.
+    pub fn in_range(mut self) -> Self {
+        let surfaces = self.surfaces.iter().flat_map(|s| [s.center, s.scale]);
+        let rays = self.rays.iter().map(|ray| ray.origin);
+        let all = surfaces.chain(rays).chain(self.lights.iter().copied());
+        let k = range_factor(all.map(|v| v.abs().max_element()).fold(0.0, f64::max));
+        for surface in &mut self.surfaces {
+            surface.center *= k;
+            surface.scale *= k;
+        }
+        for ray in &mut self.rays {
+            ray.origin *= k;
+            ray.direction *= k;
+        }
+        for light in &mut self.lights {
+            *light *= k;
+        }
+        self
+    }
+}
+
+/// What the device says of a ray.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Answer {
+    /// Whether it meets a surface.
+    pub found: bool,
+    /// Whether that is the greater root: the surface is met from inside.
+    pub inside: bool,
+    /// Whether the device holds `value` for finite.
+    pub finite: bool,
+    /// Whether the hit point faces its light.
+    pub facing: bool,
+    /// Whether something stands between the hit point and its light, or between the origin and t = 1.
+    pub blocked: bool,
+    /// The surface, by its place in the batch.
+    pub surface: u32,
+    /// t, the cosine to the light, or the power asked for.
+    pub value: f64,
+    /// The two words as they are.
+    pub words: [u32; 2],
+}
+
+/// What a batch asks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Question {
+    /// The nearest hit.
+    Nearest,
+    /// Whether anything stands between the origin and t = 1.
+    Blocked,
+    /// The nearest hit, and whether its light reaches it.
+    Lit,
+    /// The hit after so many reflections as the batch says.
+    Bounce,
+    /// cosⁿ; the origin's x is 1 − cos, its y is n.
+    Power,
+    /// The residuals of the error-free sum and product of the origin's x and y.
+    Transforms,
+}
+
+impl Question {
+    fn entry_point(self) -> &'static str {
+        match self {
+            Self::Nearest => "probe_nearest",
+            Self::Blocked => "probe_blocked",
+            Self::Lit => "probe_lit",
+            Self::Bounce => "probe_bounce",
+            Self::Power => "probe_power",
+            Self::Transforms => "probe_transforms",
+        }
+    }
+
+    /// Bindings that the entry point reads, as in `shaders/`; with those for the low parts.
+    fn bindings(self, low: bool) -> Vec<u32> {
+        let (plain, more): (&[u32], &[u32]) = match self {
+            Self::Nearest | Self::Blocked => (&[0, 1, 13, 15, 16, 17], &[9, 14]),
+            Self::Lit => (&[0, 1, 2, 3, 13, 15, 16, 17], &[9, 10, 14]),
+            Self::Bounce => (&[0, 1, 2, 13, 15, 16, 17], &[9, 14]),
+            Self::Power => (&[13, 16, 17], &[]),
+            Self::Transforms => (&[0, 13, 16, 17], &[]),
+        };
+        let mut bindings = plain.to_vec();
+        if low {
+            bindings.extend(more);
+        }
+        bindings
+    }
+}
+
+/// Numbers for the kernel as they are, past the packing of pictures: for bit patterns that no scene has.
+#[derive(Debug, Clone, Default)]
+pub struct RawBatch {
+    /// Origin and direction, and what is to pass for their low parts.
+    pub rays: Vec<[[f64; 6]; 2]>,
+    /// The shape of each ray, and what is to pass for its low parts.
+    pub shapes: Vec<[ShapeValues; 2]>,
+}
+
+/// Bytes of one dispatch.
+struct Inputs {
+    shapes: Vec<u8>,
+    shapes_low: Vec<u8>,
+    materials: Vec<u8>,
+    lights: Vec<u8>,
+    lights_low: Vec<u8>,
+    reals: Vec<u8>,
+    reals_low: Vec<u8>,
+    words: Vec<[u32; 4]>,
+}
+
+/// A kernel on a device that answers batches of rays.
+#[derive(Debug)]
+pub struct Prober<'a> {
+    gpu: &'a Gpu,
+    kernel: Kernel,
+    module: wgpu::ShaderModule,
+    pipelines: HashMap<Question, wgpu::ComputePipeline>,
+    busy: Duration,
+}
+
+impl<'a> Prober<'a> {
+    /// Composes the module; [`Error::NoDevice`] where the device cannot calculate in `f64` and the kernel does.
+    pub fn new(gpu: &'a Gpu, kernel: Kernel) -> Result<Self, Error> {
+        if kernel.is_double() && !gpu.info.f64 {
+            return Err(Error::NoDevice(format!("{} cannot calculate in f64", gpu.info)));
+        }
+        let module = gpu.shader_module(&Module::probe(kernel))?;
+        Ok(Self { gpu, kernel, module, pipelines: HashMap::new(), busy: Duration::ZERO })
+    }
+
+    /// Its kernel.
+    pub fn kernel(&self) -> Kernel {
+        self.kernel
+    }
+
+    /// Its device.
+    pub fn gpu(&self) -> &'a Gpu {
+        self.gpu
+    }
+
+    /// Time of all dispatches so far, from submission to completion.
+    pub fn busy(&self) -> Duration {
+        self.busy
+    }
+
+    /// Answers `question` for every ray of `batch`, in order.
+    pub fn ask(&mut self, question: Question, batch: &Batch) -> Result<Vec<Answer>, Error> {
+        self.prepare(question)?;
+        let mut answers = Vec::with_capacity(batch.rays.len());
+        for (chunk, rays) in batch.rays.chunks(MAX_RAYS).enumerate() {
+            let first = rays.iter().map(|ray| ray.first).min().unwrap_or(0);
+            let end = rays.iter().map(|ray| ray.end).max().unwrap_or(0);
+            let surfaces = &batch.surfaces[first as usize..end as usize];
+            let lights = batch.lights.iter().skip(chunk * MAX_RAYS).take(rays.len());
+            let lights: Vec<_> = lights.map(|&position| Light { position, intensity: DVec3::ONE }).collect();
+            let bounces = (question == Question::Bounce).then_some(batch.bounces);
+            let inputs = match self.kernel.is_double() {
+                false => pack::<single::Layout>(rays, surfaces, &lights, first, bounces),
+                true => pack::<double::Layout>(rays, surfaces, &lights, first, bounces),
+            };
+            self.dispatch(question, &inputs, rays.len(), first, &mut answers)?;
+        }
+        Ok(answers)
+    }
+
+    /// The nearest hit of every ray with its shape.
+    pub fn ask_raw(&mut self, batch: &RawBatch) -> Result<Vec<Answer>, Error> {
+        self.prepare(Question::Nearest)?;
+        let mut answers = Vec::with_capacity(batch.rays.len());
+        for (rays, shapes) in batch.rays.chunks(MAX_RAYS).zip(batch.shapes.chunks(MAX_RAYS)) {
+            let inputs = match self.kernel.is_double() {
+                false => pack_raw::<single::Layout>(rays, shapes),
+                true => pack_raw::<double::Layout>(rays, shapes),
+            };
+            self.dispatch(Question::Nearest, &inputs, rays.len(), 0, &mut answers)?;
+        }
+        Ok(answers)
+    }
+
+    fn prepare(&mut self, question: Question) -> Result<(), Error> {
+        if self.pipelines.contains_key(&question) {
+            return Ok(());
+        }
+        let tier = if self.kernel.is_double() { Tier::Double } else { Tier::Fast };
+        let specialisation = Specialisation {
+            tier,
+            effects: EffectSet::ALL,
+            skip_self: true,
+            blinn: false,
+            few: None,
+            count_rays: false,
+            samples: 1,
+        };
+        let pipeline = self.gpu.checked("compiling the probe", || {
+            self.gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(question.entry_point()),
+                layout: None,
+                module: &self.module,
+                entry_point: Some(question.entry_point()),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants: &specialisation.constants(),
+                    zero_initialize_workgroup_memory: false,
+                },
+                cache: None,
+            })
+        })?;
+        self.pipelines.insert(question, pipeline);
+        Ok(())
+    }
+
+    fn dispatch(
+        &mut self,
+        question: Question,
+        inputs: &Inputs,
+        count: usize,
+        first: u32,
+        answers: &mut Vec<Answer>,
+    ) -> Result<(), Error> {
+        let Some(pipeline) = self.pipelines.get(&question) else { return Ok(()) };
+        let gpu = self.gpu;
+        let padded = count.next_multiple_of(GROUP);
+        let real = if self.kernel.is_double() { 8 } else { 4 };
+        let params = if self.kernel.is_double() { params::<double::Layout>() } else { params::<single::Layout>() };
+        let flags = Readable::new(gpu, padded as u64 * 2);
+        let values = Readable::new(gpu, (padded * real / 4) as u64);
+        let wanted = question.bindings(self.kernel.carries_low());
+        let buffers = gpu.checked("reserving buffers", || {
+            let buffer = |(binding, contents, usage): (u32, &[u8], wgpu::BufferUsages)| {
+                let contents = if contents.is_empty() { &[0; 256] } else { contents };
+                let descriptor = wgpu::util::BufferInitDescriptor { label: None, contents, usage };
+                (binding, gpu.device.create_buffer_init(&descriptor))
+            };
+            let storage = wgpu::BufferUsages::STORAGE;
+            let all: [(u32, &[u8], wgpu::BufferUsages); 9] = [
+                (0, &params, wgpu::BufferUsages::UNIFORM),
+                (1, &inputs.shapes, storage),
+                (2, &inputs.materials, storage),
+                (3, &inputs.lights, storage),
+                (9, &inputs.shapes_low, storage),
+                (10, &inputs.lights_low, storage),
+                (13, &inputs.reals, storage),
+                (14, &inputs.reals_low, storage),
+                (15, bytemuck::cast_slice(&inputs.words), storage),
+            ];
+            all.into_iter().filter(|(binding, ..)| wanted.contains(binding)).map(buffer).collect::<Vec<_>>()
+        })?;
+        let outputs = [(16, &flags.buffer), (17, &values.buffer)];
+        let entries: Vec<_> = buffers
+            .iter()
+            .map(|(binding, buffer)| (*binding, buffer))
+            .chain(outputs)
+            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
+            .collect();
+        let bind_group = gpu.checked("binding the probe's buffers", || {
+            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: None,
+                layout: &pipeline.get_bind_group_layout(0),
+                entries: &entries,
+            })
+        })?;
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, &bind_group, &[]);
+            pass.dispatch_workgroups((padded / GROUP) as u32, 1, 1);
+        }
+        let start = Instant::now();
+        gpu.queue.submit([encoder.finish()]);
+        gpu.wait()?;
+        self.busy += start.elapsed();
+        let flags = flags.read(gpu, count * 2, <[u32]>::to_vec)?;
+        let values = values.read(gpu, count * real / 4, <[u32]>::to_vec)?;
+        let value = |i: usize| match real {
+            4 => f64::from(f32::from_bits(values[i])),
+            _ => f64::from_bits(u64::from(values[2 * i]) | (u64::from(values[2 * i + 1]) << 32)),
+        };
+        answers.extend(flags.as_chunks::<2>().0.iter().enumerate().map(|(i, words)| Answer {
+            found: words[0] & 1 != 0,
+            inside: words[0] & 2 != 0,
+            finite: words[0] & 4 != 0,
+            facing: words[0] & 8 != 0,
+            blocked: words[0] & 16 != 0,
+            surface: words[1].wrapping_add(first),
+            value: value(i),
+            words: *words,
+        }));
+        Ok(())
+    }
+}
+
+fn params<L: Layout>() -> Vec<u8> {
+    bytes([L::params(&ParamValues {
+        background: DVec3::ZERO,
+        near: 1.0,
+        ambient: DVec3::ZERO,
+        primary_t_min: NEAR_T_MIN,
+        shadow_t_min: 0.0,
+        reflection_t_min: 0.0,
+        quantize_bias: 0.0,
+        sphere_count: 0,
+        light_count: 0,
+        max_depth: 0,
+    })])
+}
+
+fn reals<L: Layout>(values: impl Iterator<Item = [f64; 6]>, count: usize) -> Vec<u8> {
+    let padding = count.next_multiple_of(GROUP) - count;
+    bytes(values.chain(std::iter::repeat_n([0.0; 6], padding)).flatten().map(L::real))
+}
+
+fn pack<L: Layout>(
+    rays: &[ProbeRay],
+    surfaces: &[Surface],
+    lights: &[Light],
+    first: u32,
+    bounces: Option<u32>,
+) -> Inputs {
+    let sphere = |s: &Surface| Sphere {
+        center: s.center,
+        scale: s.scale,
+        color: DVec3::ONE,
+        ka: 0.0,
+        kd: 1.0,
+        ks: 0.0,
+        kr: 0.0,
+        n: 1.0,
+        kt: 0.0,
+        eta: 1.0,
+    };
+    let spheres: Vec<_> = surfaces.iter().map(sphere).collect();
+    let ellipsoids: Vec<_> = spheres.iter().map(Ellipsoid::new).collect();
+    let shapes = shape_values(&ellipsoids, shape_indices(&ellipsoids), true);
+    let numbers = |ray: &ProbeRay| {
+        let (o, d) = (ray.origin, ray.direction);
+        [o.x, o.y, o.z, d.x, d.y, d.z]
+    };
+    let words = |ray: &ProbeRay| {
+        let own = ray.own.map_or(0, |own| own - first + 1);
+        [ray.first - first, ray.end - first, bounces.unwrap_or(u32::from(!ray.primary)), own]
+    };
+    // The kernel reads the light of every invocation, those past the last ray included.
+    let padding = rays.len().next_multiple_of(GROUP) - rays.len();
+    let mut lights = lights.to_vec();
+    lights.extend(std::iter::repeat_n(Light { position: DVec3::ZERO, intensity: DVec3::ONE }, padding));
+    let mut words: Vec<_> = rays.iter().map(words).collect();
+    words.extend(std::iter::repeat_n([0; 4], padding));
+    Inputs {
+        shapes: bytes(shapes.iter().map(L::shape)),
+        shapes_low: bytes(shapes.iter().map(|s| L::shape(&low_shape::<L>(s)))),
+        materials: bytes(spheres.iter().zip(&ellipsoids).map(|(s, e)| L::material(s, e.scale))),
+        lights: bytes(lights.iter().map(L::light)),
+        lights_low: bytes(lights.iter().map(|light| L::light(&low_light::<L>(light)))),
+        reals: reals::<L>(rays.iter().map(numbers), rays.len()),
+        reals_low: reals::<L>(rays.iter().map(|ray| numbers(ray).map(L::residual)), rays.len()),
+        words,
+    }
+}
+
+fn pack_raw<L: Layout>(rays: &[[[f64; 6]; 2]], shapes: &[[ShapeValues; 2]]) -> Inputs {
+    let part = |part: usize| bytes(shapes.iter().map(|s| L::shape(&s[part])));
+    let real = |part: usize| reals::<L>(rays.iter().map(|ray| ray[part]), rays.len());
+    let mut words: Vec<_> = (0..rays.len() as u32).map(|i| [i, i + 1, 1, 0]).collect();
+    words.resize(rays.len().next_multiple_of(GROUP), [0; 4]);
+    Inputs {
+        shapes: part(0),
+        shapes_low: part(1),
+        materials: Vec::new(),
+        lights: Vec::new(),
+        lights_low: Vec::new(),
+        reals: real(0),
+        reals_low: real(1),
+        words,
+    }
+}

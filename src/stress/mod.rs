@@ -1,0 +1,206 @@
+//! Hard cases: what each tier promises, checked on the user's device through the code that renders.
+
+mod classes;
+mod cost;
+mod metrics;
+mod pictures;
+mod random;
+mod rays;
+mod report;
+mod special;
+mod truth;
+
+use std::time::Instant;
+
+use serde::Serialize;
+
+pub use classes::{Class, classes};
+pub use cost::{Cost, cost};
+pub use metrics::{Limit, Metrics, Quantity, Target, Verdict};
+pub use random::Random;
+pub use report::table;
+pub use truth::carried;
+
+use crate::gpu::{Error, Gpu, Kernel, Prober, Question};
+use crate::precision::Tier;
+use classes::{Case, Kind};
+use truth::{Expected, Given, expected, judge};
+
+/// One case on one kernel.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Row {
+    /// The class's number.
+    pub id: u32,
+    /// The class's name.
+    pub class: &'static str,
+    /// The case within the class.
+    pub case: &'static str,
+    /// The kernel.
+    pub kernel: &'static str,
+    /// Counts and errors.
+    #[serde(flatten)]
+    pub metrics: Metrics,
+    /// What is promised.
+    pub target: Target,
+    /// Whether it holds.
+    pub verdict: Verdict,
+    /// Wall-clock time of the case on this kernel, in ms, truth included where it is this kernel's alone.
+    pub ms: f64,
+}
+
+impl Row {
+    /// Whether a promise is broken.
+    pub fn is_broken(&self) -> bool {
+        matches!(self.verdict, Verdict::Fail(_))
+    }
+}
+
+/// The tier whose targets judge `kernel`: what goes wrong without a tier's care is judged as that tier.
+fn judged_as(kernel: Kernel) -> Tier {
+    match kernel {
+        Kernel::Tier(tier) => tier,
+        Kernel::Schoolbook => Tier::Fast,
+        Kernel::NoBarrier => Tier::Robust,
+    }
+}
+
+/// The |1 − l²| below which a tier may take a miss for a hit and the reverse.
+fn band(tier: Tier) -> f64 {
+    match tier {
+        Tier::Fast => 4e-7,
+        Tier::Robust => 2.5e-7,
+        Tier::Double => 1e-9,
+    }
+}
+
+/// Runs `classes` with `count` rays each on every kernel; `row_done` sees each row as it comes.
+pub fn run(
+    gpu: &Gpu,
+    kernels: &[Kernel],
+    classes: &[Class],
+    count: usize,
+    seed: u64,
+    mut row_done: impl FnMut(&Row),
+) -> Result<Vec<Row>, Error> {
+    let mut probers = Vec::new();
+    for &kernel in kernels {
+        let prober = match Prober::new(gpu, kernel) {
+            Ok(prober) => Ok(prober),
+            Err(Error::NoDevice(why)) => Err(why),
+            Err(error) => return Err(error),
+        };
+        probers.push((kernel, prober));
+    }
+    let mut rows = Vec::new();
+    for class in classes {
+        for (number, case) in class.cases.iter().enumerate() {
+            let stream = u64::from(class.id) << 8 | number as u64;
+            let mut shared = Shared::new(case, Random::new(seed, stream), count);
+            for (kernel, prober) in &mut probers {
+                let start = Instant::now();
+                let target = case.targets[judged_as(*kernel) as usize].clone();
+                if target == Target::NotApplicable {
+                    continue;
+                }
+                let (metrics, verdict) = match prober {
+                    Err(why) => (Metrics::default(), Verdict::Refused(why.clone())),
+                    Ok(prober) => {
+                        let Some(metrics) = shared.measure(case, prober)? else { continue };
+                        let verdict = Verdict::of(&metrics, &target);
+                        (metrics, verdict)
+                    }
+                };
+                let row = Row {
+                    id: class.id,
+                    class: class.name,
+                    case: case.label,
+                    kernel: kernel.name(),
+                    metrics,
+                    target,
+                    verdict,
+                    ms: start.elapsed().as_secs_f64() * 1e3,
+                };
+                row_done(&row);
+                rows.push(row);
+            }
+        }
+    }
+    Ok(rows)
+}
+
+/// What the kernels of one case share: the rays, and the truth of each kind of input.
+struct Shared {
+    random: Random,
+    count: usize,
+    batch: crate::gpu::Batch,
+    lit: Vec<bool>,
+    truths: [Option<Vec<Expected>>; 2],
+}
+
+impl Shared {
+    fn new(case: &Case, mut random: Random, count: usize) -> Self {
+        let (batch, lit) = match case.kind {
+            Kind::Rays(generate) => (generate(&mut random, count), Vec::new()),
+            Kind::Lit(generate) => generate(&mut random, count),
+            _ => Default::default(),
+        };
+        Self { random, count, batch: batch.in_range(), lit, truths: [None, None] }
+    }
+
+    fn truth(&mut self, given: Given) -> &[Expected] {
+        let batch = &self.batch;
+        self.truths[given as usize].get_or_insert_with(|| expected(batch, given))
+    }
+
+    /// `None` where the case does not concern the kernel.
+    fn measure(&mut self, case: &Case, prober: &mut Prober) -> Result<Option<Metrics>, Error> {
+        let kernel = prober.kernel();
+        let tier = judged_as(kernel);
+        let given = if kernel.carries_low() || kernel.is_double() { Given::Whole } else { Given::Rounded };
+        // Every kernel sees the same numbers.
+        let mut random = self.random.clone();
+        // Pictures and scenes are for tiers only.
+        let picture = |make: fn(&Gpu, Tier) -> Result<Metrics, Error>| match kernel {
+            Kernel::Tier(tier) => make(prober.gpu(), tier).map(Some),
+            Kernel::Schoolbook | Kernel::NoBarrier => Ok(None),
+        };
+        match case.kind {
+            Kind::Rays(_) => {
+                let answers = prober.ask(Question::Nearest, &self.batch)?;
+                self.truth(given);
+                let truth = self.truths[given as usize].as_deref().unwrap_or_default();
+                Ok(Some(judge(&self.batch, &answers, truth, given, band(tier))))
+            }
+            Kind::Lit(_) => self.measure_light(prober).map(Some),
+            Kind::ZeroScale => picture(|_, _| Ok(special::zero_scale())),
+            Kind::NegativeScale => special::negative_scale(prober, &mut random, self.count).map(Some),
+            Kind::BitPatterns => special::bit_patterns(prober, &mut random, 2 * self.count).map(Some),
+            Kind::Power => special::power(prober, &mut random, self.count).map(Some),
+            Kind::OddLights => picture(pictures::odd_lights),
+            Kind::Mirrors => picture(pictures::mirrors),
+            Kind::FacingMirrors => special::facing_mirrors(prober, &mut random, self.count).map(Some),
+            Kind::Transforms if kernel.carries_low() => special::transforms(prober, &mut random).map(Some),
+            Kind::Transforms => Ok(None),
+        }
+    }
+
+    /// Whether the light reaches the hits that it ought to reach, and no others.
+    fn measure_light(&self, prober: &mut Prober) -> Result<Metrics, Error> {
+        let answers = prober.ask(Question::Lit, &self.batch)?;
+        let mut metrics = Metrics { count: answers.len() as u64, ..Metrics::default() };
+        let (mut acne, mut leaks) = (0, 0);
+        for ((answer, ray), &lit) in answers.iter().zip(&self.batch.rays).zip(&self.lit) {
+            if !answer.found || answer.surface != ray.first {
+                metrics.wrong_roots += u64::from(answer.found);
+                metrics.false_misses += u64::from(!answer.found);
+                continue;
+            }
+            metrics.not_finite += u64::from(!answer.value.is_finite());
+            let is_lit = answer.facing && !answer.blocked;
+            acne += u64::from(lit && !is_lit);
+            leaks += u64::from(!lit && is_lit);
+        }
+        (metrics.acne, metrics.leaks) = (Some(acne), Some(leaks));
+        Ok(metrics)
+    }
+}

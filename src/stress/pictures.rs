@@ -1,0 +1,98 @@
+//! The classes that need whole pictures: lights in odd places, mirrors.
+
+use super::metrics::Metrics;
+use crate::compare::Explanation;
+use crate::cpu::{Judge, Reference};
+use crate::effects::Effects;
+use crate::engine::{Backend, Engine, render_picture};
+use crate::film::Picture;
+use crate::gpu::{Error, Gpu};
+use crate::precision::Tier;
+use crate::scene::{Scene, parse};
+use crate::settings::Settings;
+
+/// Width and height: odd, so that a ray goes through the very middle.
+const SIZE: u32 = 97;
+
+fn scene(statements: &str) -> Result<Scene, Error> {
+    let head = format!("NEAR 1\nLEFT -0.5\nRIGHT 0.5\nBOTTOM -0.5\nTOP 0.5\nRES {SIZE} {SIZE}\n");
+    let parsed = parse("stress", format!("{head}{statements}").as_bytes());
+    let report = parsed.report(false);
+    parsed.scene.ok_or_else(|| Error::Lost(format!("a scene of this program has errors: {report}")))
+}
+
+/// The device's picture and its number of pixels that are not finite.
+fn render(gpu: &Gpu, tier: Tier, scene: &Scene, settings: &Settings) -> Result<(Vec<u8>, u64), Error> {
+    let effects = Effects::of(scene, settings);
+    let mut engine = Engine::new(Backend::Device(gpu, tier), scene, settings, &effects)?;
+    render_picture(&mut engine, scene)
+}
+
+/// The reference's picture.
+fn reference(scene: &Scene, settings: &Settings) -> Result<(Vec<u8>, u64), Error> {
+    let effects = Effects::of(scene, settings);
+    let mut engine = Engine::new(Backend::Reference, scene, settings, &effects)?;
+    render_picture(&mut engine, scene)
+}
+
+/// Adds one scene to the metrics: pixels that are not finite, and differences that the reference does not explain.
+fn add(metrics: &mut Metrics, gpu: &Gpu, tier: Tier, scene: &Scene, settings: &Settings) -> Result<Vec<u8>, Error> {
+    let (rgb, not_finite) = render(gpu, tier, scene, settings)?;
+    let (expected, _) = reference(scene, settings)?;
+    metrics.count += u64::from(SIZE * SIZE);
+    metrics.not_finite += not_finite;
+    let picture = |rgb: &[u8]| Picture::new(SIZE, SIZE, rgb.to_vec());
+    if let (Ok(picture), Ok(expected)) = (picture(&rgb), picture(&expected)) {
+        let reference = Reference::new(scene, settings, &Effects::of(scene, settings));
+        let explanation = Explanation::of(&picture, &expected, &reference, &Judge::of(tier));
+        *metrics.differing.get_or_insert(0) += explanation.unexplained;
+    }
+    Ok(rgb)
+}
+
+/// Class 16: a light on the surface, at the middle ray's hit point, inside, behind.
+pub(super) fn odd_lights(gpu: &Gpu, tier: Tier) -> Result<Metrics, Error> {
+    let mut metrics = Metrics::default();
+    for place in ["0 0 -3", "0 1 -4", "0.6 0 -3.2", "0 0 -4", "0 0 -3.5", "0 0 -8", "0 0 0", "0 0 -3.0000001"] {
+        let scene = scene(&format!(
+            "SPHERE s 0 0 -4 1 1 1 0.8 0.5 0.3 0.1 0.6 0.5 0 50\nSPHERE back 0 0 -14 8 8 8 1 1 1 0.1 0.8 0.1 0 5\n\
+             LIGHT l {place} 1 1 1\nBACK 0 0 0.2\nAMBIENT 0.2 0.2 0.2\n"
+        ))?;
+        add(&mut metrics, gpu, tier, &scene, &Settings::exact())?;
+    }
+    metrics.note = "differing: pixels that the reference does not explain".into();
+    Ok(metrics)
+}
+
+/// Two mirrors beside the view, a third ahead.
+fn corridor(kr: f64, ka: f64, ambient: f64, light: f64) -> Result<Scene, Error> {
+    scene(&format!(
+        "SPHERE l -101 0 -5 100 100 100 1 1 1 {ka} 0.5 0.5 {kr} 20\nSPHERE r 101 0 -5 100 100 100 1 1 1 {ka} 0.5 0.5 {kr} 20\n\
+         SPHERE m 0 0 -6 0.7 0.7 0.7 1 1 1 {ka} 0.5 0.5 {kr} 20\nLIGHT l 0 0.5 -1 {light} {light} {light}\nBACK 0 0 0\n\
+         AMBIENT {ambient} {ambient} {ambient}\n"
+    ))
+}
+
+/// Class 20: mirrors that lose nothing or amplify, lights beyond 1; no mirror gives more than its Kr.
+pub(super) fn mirrors(gpu: &Gpu, tier: Tier) -> Result<Metrics, Error> {
+    let mut metrics = Metrics::default();
+    for (kr, light, depth) in [(1.0, 1.0, 40), (1.5, 1.0, 60), (1e3, 1e6, 100), (1.0, 1e30, 20)] {
+        let settings = Settings { max_depth: depth, ..Settings::exact() };
+        let (_, not_finite) = render(gpu, tier, &corridor(kr, 0.1, 0.2, light)?, &settings)?;
+        metrics.count += u64::from(SIZE * SIZE);
+        metrics.not_finite += not_finite;
+    }
+    let mut brighter = 0;
+    for (kr, depth) in [(0.5_f64, 8_u32), (0.9, 8), (1.0, 6)] {
+        let settings = Settings { max_depth: depth, ..Settings::exact() };
+        let (rgb, not_finite) = render(gpu, tier, &corridor(kr, 0.1, 1.0, 0.0)?, &settings)?;
+        let bound: f64 = (0..=depth).map(|bounce| 0.1 * kr.powi(bounce as i32)).sum();
+        let level = (255.0 * bound.min(1.0) + 0.5).floor();
+        brighter += rgb.iter().filter(|&&value| f64::from(value) > level).count() as u64;
+        metrics.count += u64::from(SIZE * SIZE);
+        metrics.not_finite += not_finite;
+    }
+    metrics.differing = Some(brighter);
+    metrics.note = "differing: levels above the sum of Kr^k".into();
+    Ok(metrics)
+}
