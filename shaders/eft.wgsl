@@ -96,11 +96,11 @@ fn pair_dot(a: Pair3, b: Pair3) -> Pair {
     return fast_two_sum(xyz.hi, (xy.lo + xyz.lo) + low);
 }
 
-// a x b likewise, rounded once.
-fn pair_cross(a: Pair3, b: Pair3) -> vec3<f32> {
+// a x b likewise.
+fn pair_cross(a: Pair3, b: Pair3) -> Pair3 {
     let left = two_product3(a.hi.yzx, b.hi.zxy);
     let right = two_product3(a.hi.zxy, b.hi.yzx);
     let high = two_sum3(left.hi, -right.hi);
     let mixed = (a.hi.yzx * b.lo.zxy - a.hi.zxy * b.lo.yzx) + (a.lo.yzx * b.hi.zxy - a.lo.zxy * b.hi.yzx);
-    return high.hi + (high.lo + ((left.lo - right.lo) + mixed));
+    return fast_two_sum3(high.hi, high.lo + ((left.lo - right.lo) + mixed));
 }

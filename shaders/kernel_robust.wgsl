@@ -70,10 +70,10 @@ fn approach(ray: Ray, sphere: u32) -> Approach {
     let radius = Pair(shape.radius, low.radius);
     let radius_squared = pair_product(radius, radius);
     let c = pair_difference(pair_dot(origin, origin), radius_squared);
-    let far = a.hi * radius_squared.hi - dot(moment, moment);
+    let far = pair_difference(pair_product(a, radius_squared), pair_dot(moment, moment));
     let near = pair_difference(pair_product(minus_b, minus_b), pair_product(a, c));
     let is_near = abs(c.hi) < 0.5 * radius_squared.hi;
-    return Approach(direction.hi, moment, a, Pair(-minus_b.hi, -minus_b.lo), c, select(far, near.hi, is_near));
+    return Approach(direction.hi, moment.hi, a, Pair(-minus_b.hi, -minus_b.lo), c, select(far.hi, near.hi, is_near));
 }
 
 // Both intersections of the line.
