@@ -13,7 +13,7 @@ struct Own {
 // The nearest accepted intersection.
 struct Hit {
     found: bool,
-    t: real,
+    t: Distance,
     sphere: u32,
     // Whether it is the greater root: the sphere is seen from inside.
     inside: bool,
@@ -24,17 +24,17 @@ struct Range {
     // A root counts beyond this.
     t_min: real,
     // A root counts before this.
-    t_max: real,
+    t_max: Distance,
     // Whether the greater root counts where the lesser is too near.
     greater: bool,
 }
 
 fn primary_range() -> Range {
-    return Range(params.primary_t_min, FAR, SHELLS);
+    return Range(params.primary_t_min, distance_of(FAR), SHELLS);
 }
 
 fn reflection_range() -> Range {
-    return Range(params.reflection_t_min, FAR, true);
+    return Range(params.reflection_t_min, distance_of(FAR), true);
 }
 
 // Where a ray that starts on the inner wall leaves its own sphere: C = 0, so t = -2B/A and no quadratic is needed.
@@ -50,7 +50,7 @@ fn exit_root(own: Own, direction_in_world: vec3r, sphere: u32) -> real {
 // The least root of one sphere that counts.
 struct Root {
     counts: bool,
-    t: real,
+    t: Distance,
     // Whether it is the greater one.
     inside: bool,
 }
@@ -58,21 +58,21 @@ struct Root {
 fn accepted_root(ray: Ray, sphere: u32, own: Own, range: Range) -> Root {
     if SKIP_SELF && own.shape == shapes[sphere].index {
         // The outside of a convex surface is never met again.
-        let t = exit_root(own, direction_of(ray), sphere);
-        return Root(own.inside && t > range.t_min && t < range.t_max, t, true);
+        let t = distance_of(exit_root(own, direction_of(ray), sphere));
+        return Root(own.inside && is_beyond(t, range.t_min) && is_nearer(t, range.t_max), t, true);
     }
     let roots = roots(ray, sphere);
-    if roots.lesser > range.t_min {
-        return Root(roots.exist && roots.lesser < range.t_max, roots.lesser, false);
+    if is_beyond(roots.lesser, range.t_min) {
+        return Root(roots.exist && is_nearer(roots.lesser, range.t_max), roots.lesser, false);
     }
-    let counts = roots.exist && range.greater && roots.greater > range.t_min && roots.greater < range.t_max;
-    return Root(counts, roots.greater, true);
+    let is_within = is_beyond(roots.greater, range.t_min) && is_nearer(roots.greater, range.t_max);
+    return Root(roots.exist && range.greater && is_within, roots.greater, true);
 }
 
 // The nearest intersection in the range; of equal ones the lowest index.
 fn nearest_hit(ray: Ray, own: Own, within: Range) -> Hit {
     var range = within;
-    var nearest = Hit(false, FAR, 0u, false);
+    var nearest = Hit(false, distance_of(FAR), 0u, false);
     for (var sphere = first_sphere(); sphere < sphere_count(); sphere++) {
         let root = accepted_root(ray, sphere, own, range);
         if root.counts {

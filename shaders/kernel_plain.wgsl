@@ -73,8 +73,8 @@ fn approach(ray: Ray, sphere: u32) -> Approach {
 struct Roots {
     // Whether there are any. Ordered comparisons decide: a NaN is never a hit.
     exist: bool,
-    lesser: real,
-    greater: real,
+    lesser: Distance,
+    greater: Distance,
 }
 
 fn roots(ray: Ray, sphere: u32) -> Roots {

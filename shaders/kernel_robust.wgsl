@@ -51,7 +51,7 @@ struct Approach {
     b: Pair,
     c: Pair,
     // B^2 - A C: negative where the line misses.
-    discriminant: real,
+    discriminant: Pair,
 }
 
 fn approach(ray: Ray, sphere: u32) -> Approach {
@@ -73,42 +73,43 @@ fn approach(ray: Ray, sphere: u32) -> Approach {
     let far = pair_difference(pair_product(a, radius_squared), pair_dot(moment, moment));
     let near = pair_difference(pair_product(minus_b, minus_b), pair_product(a, c));
     let is_near = abs(c.hi) < 0.5 * radius_squared.hi;
-    return Approach(direction.hi, moment.hi, a, Pair(-minus_b.hi, -minus_b.lo), c, select(far.hi, near.hi, is_near));
+    return Approach(direction.hi, moment.hi, a, Pair(-minus_b.hi, -minus_b.lo), c, Pair(select(far.hi, near.hi, is_near), select(far.lo, near.lo, is_near)));
 }
 
 // Both intersections of the line.
 struct Roots {
     // Whether there are any. Ordered comparisons decide: a NaN is never a hit.
     exist: bool,
-    lesser: real,
-    greater: real,
+    lesser: Distance,
+    greater: Distance,
 }
 
 fn roots(ray: Ray, sphere: u32) -> Roots {
     let at = approach(ray, sphere);
-    let hits = at.discriminant >= 0.0;
-    let root = sqrt(at.discriminant);
+    let hits = at.discriminant.hi >= 0.0;
+    let root = square_root(at.discriminant);
     if at.b.hi >= 0.0 {
-        let q = at.b.hi + (root + at.b.lo);
-        return Roots(hits, at.c.hi / q, q / at.a.hi);
+        let q = pair_sum(at.b, root);
+        return Roots(hits, quotient(at.c, q), quotient(q, at.a));
     }
-    let q = at.b.hi - (root - at.b.lo);
-    return Roots(hits, q / at.a.hi, at.c.hi / q);
+    let q = pair_sum(at.b, Pair(-root.hi, -root.lo));
+    return Roots(hits, quotient(q, at.a), quotient(at.c, q));
 }
 
 // Whether a root lies beyond t_min and before t = 1.
 fn root_between(ray: Ray, sphere: u32, t_min: real) -> bool {
     let at = roots(ray, sphere);
-    let lesser = at.lesser > t_min && at.lesser < 1.0;
-    let greater = at.lesser <= t_min && at.greater > t_min && at.greater < 1.0;
-    return at.exist && (lesser || greater);
+    let end = distance_of(1.0);
+    let lesser = is_beyond(at.lesser, t_min);
+    let greater = is_beyond(at.greater, t_min) && is_nearer(at.greater, end);
+    return at.exist && select(greater, is_nearer(at.lesser, end), lesser);
 }
 
 // The hit in object space: from the closest approach c' x (S' x c') / A half a chord back or forth.
 fn local_hit(ray: Ray, hit: Hit) -> vec3r {
     let at = approach(ray, hit.sphere);
     let perpendicular = cross(at.direction, at.moment) / at.a.hi;
-    let half_chord = at.direction * (sqrt(max(at.discriminant, 0.0)) / at.a.hi);
+    let half_chord = at.direction * (sqrt(max(at.discriminant.hi, 0.0)) / at.a.hi);
     if hit.inside {
         return perpendicular + half_chord;
     }

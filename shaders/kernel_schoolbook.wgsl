@@ -53,8 +53,8 @@ fn approach(ray: Ray, sphere: u32) -> Approach {
 // Both intersections of the line.
 struct Roots {
     exist: bool,
-    lesser: real,
-    greater: real,
+    lesser: Distance,
+    greater: Distance,
 }
 
 fn roots(ray: Ray, sphere: u32) -> Roots {

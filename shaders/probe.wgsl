@@ -40,7 +40,7 @@ fn probe_hit(ray: Ray, words: vec4<u32>) -> Hit {
 
 fn hit_bits(hit: Hit) -> u32 {
     return select(0u, PROBE_FOUND, hit.found) | select(0u, PROBE_INSIDE, hit.inside)
-        | select(0u, PROBE_FINITE, is_finite(hit.t));
+        | select(0u, PROBE_FINITE, is_finite(nearest_real(hit.t)));
 }
 
 // The nearest hit.
@@ -48,7 +48,7 @@ fn hit_bits(hit: Hit) -> u32 {
 fn probe_nearest(@builtin(global_invocation_id) id: vec3<u32>) {
     let hit = probe_hit(probe_ray(id.x), probe_words[id.x]);
     probe_flags[id.x] = vec2<u32>(hit_bits(hit), hit.sphere);
-    probe_values[id.x] = hit.t;
+    probe_values[id.x] = nearest_real(hit.t);
 }
 
 // Whether something stands between the origin and t = 1.
@@ -91,7 +91,7 @@ fn probe_bounce(@builtin(global_invocation_id) id: vec3<u32>) {
         hit = nearest_hit(ray, own, reflection_range());
     }
     probe_flags[id.x] = vec2<u32>(hit_bits(hit), hit.sphere);
-    probe_values[id.x] = hit.t;
+    probe_values[id.x] = nearest_real(hit.t);
 }
 
 // The specular power of d and n.

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use serde::Serialize;
 
-use crate::cpu::{Reference, Tally};
+use crate::cpu::{Judge, Reference, Tally};
 use crate::effects::Effects;
 use crate::gpu::{self, Gpu, GpuRenderer};
 use crate::precision::Tier;
@@ -50,6 +50,18 @@ pub enum Backend<'a> {
     Reference,
     /// A Vulkan device with the kernel of a tier.
     Device(&'a Gpu, Tier),
+}
+
+impl Backend<'_> {
+    /// The judge of this renderer's pixels.
+    pub fn judge(&self) -> Judge {
+        match self {
+            Self::Reference => Judge::of(Tier::Double),
+            // Without f64 only the intersection is that of the tier: shading is in f32.
+            Self::Device(gpu, Tier::Double) if !gpu.info.f64 => Judge::of(Tier::Robust),
+            Self::Device(_, tier) => Judge::of(*tier),
+        }
+    }
 }
 
 /// A renderer with a scene.

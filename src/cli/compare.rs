@@ -174,10 +174,10 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Subje
     let scene = &loaded.scene;
     let settings = args.picture.settings();
     let effects = args.picture.effects(scene, &settings);
-    let (name, picture, not_finite, tier) = if let Some(path) = picture {
+    let (name, picture, not_finite, judge) = if let Some(path) = picture {
         // A picture of unknown origin is judged as that of the tier asked for, or else of plain f32.
-        let tier = args.device.precision.0.unwrap_or(Tier::Fast);
-        (path.display().to_string(), read(path, args.lenient)?, None, tier)
+        let judge = Judge::of(args.device.precision.0.unwrap_or(Tier::Fast));
+        (path.display().to_string(), read(path, args.lenient)?, None, judge)
     } else {
         // Comparing the reference with itself would say nothing: auto means a device here.
         let choice = if args.device.device == Choice::Auto { &Choice::Gpu } else { &args.device.device };
@@ -186,10 +186,11 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Subje
         }
         let gpu = Gpu::open(choice)?;
         let tier = args.device.selection(Some(&gpu), scene, &effects).tier;
-        let mut engine = Engine::new(Backend::Device(&gpu, tier), scene, &settings, &effects)?;
+        let backend = Backend::Device(&gpu, tier);
+        let mut engine = Engine::new(backend, scene, &settings, &effects)?;
         let (rgb, not_finite) = render_picture(&mut engine, scene)?;
         let name = format!("{}, {tier}", device_name(Some(&gpu)));
-        (name, self::picture(scene, rgb)?, Some(not_finite), tier)
+        (name, self::picture(scene, rgb)?, Some(not_finite), backend.judge())
     };
     let (rgb, _) = render_picture(&mut Engine::new(Backend::Reference, scene, &settings, &effects)?, scene)?;
     let expected = self::picture(scene, rgb)?;
@@ -199,7 +200,7 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Subje
         return Err(Failure::new(USAGE, message));
     }
     let reference = Reference::new(scene, &settings, &effects);
-    let explanation = Explanation::of(&picture, &expected, &reference, &Judge::of(tier));
+    let explanation = Explanation::of(&picture, &expected, &reference, &judge);
     let names = [name, format!("reference of {}", loaded.name)];
     Ok(Subject { names, pictures: [picture, expected], explanation: Some(explanation), not_finite })
 }

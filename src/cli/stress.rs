@@ -57,10 +57,10 @@ impl FromStr for Selected {
         if text == "all" {
             return Ok(Self(Tier::ALL.map(Kernel::Tier).to_vec()));
         }
-        let all = Tier::ALL.map(Kernel::Tier).into_iter().chain([Kernel::Schoolbook, Kernel::NoBarrier]);
+        let all = Tier::ALL.map(Kernel::Tier).into_iter().chain([Kernel::Pairs, Kernel::Schoolbook, Kernel::NoBarrier]);
         let kernel = all.into_iter().find(|kernel| kernel.name() == text);
         kernel.map(|kernel| Self(vec![kernel])).ok_or_else(|| {
-            "expected fast, robust, double, all, schoolbook or no-barrier, or several with commas between".into()
+            "expected fast, robust, double, all, pairs, schoolbook or no-barrier, or several with commas between".into()
         })
     }
 }

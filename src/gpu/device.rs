@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::error::Error;
 use super::selftest::SelfTest;
-use super::shader::Module;
+use super::shader::{Kernel, Module};
 use crate::precision::Tier;
 
 /// Which device renders.
@@ -191,8 +191,7 @@ impl Gpu {
     pub fn ladder(&self) -> &'static [Tier] {
         match (self.info.kind, self.info.f64) {
             ("software", true) => &[Tier::Fast, Tier::Double, Tier::Robust],
-            (_, true) => &[Tier::Fast, Tier::Robust, Tier::Double],
-            (_, false) => &[Tier::Fast, Tier::Robust],
+            _ => &Tier::ALL,
         }
     }
 
@@ -201,16 +200,13 @@ impl Gpu {
         self.device.destroy();
     }
 
-    /// Whether the device can run the kernel of `tier`; a refusal says why.
-    pub fn require(&self, tier: Tier) -> Result<(), Error> {
+    /// The kernel that keeps the promise of `tier` on this device; a refusal says why there is none.
+    pub fn kernel(&self, tier: Tier) -> Result<Kernel, Error> {
         match tier {
-            Tier::Fast => Ok(()),
-            Tier::Robust => SelfTest::require(self),
-            Tier::Double if self.info.f64 => Ok(()),
-            Tier::Double => Err(Error::NoDevice(format!(
-                "{} has no f64 in shaders, which precision `double` needs; `--precision robust` and `--device cpu` do not",
-                self.info
-            ))),
+            Tier::Fast => Ok(Kernel::Tier(tier)),
+            Tier::Robust => SelfTest::require(self).map(|()| Kernel::Tier(tier)),
+            Tier::Double if self.info.f64 => Ok(Kernel::Tier(tier)),
+            Tier::Double => SelfTest::require(self).map(|()| Kernel::Pairs),
         }
     }
 

@@ -4,9 +4,8 @@ use super::compute::{Job, Space};
 use super::device::Gpu;
 use super::error::Error;
 use super::pack::Packed;
-use super::shader::Module;
+use super::shader::{Kernel, Module};
 use crate::effects::Effects;
-use crate::precision::Tier;
 use crate::scene::Scene;
 use crate::settings::Settings;
 
@@ -20,13 +19,13 @@ pub fn echo_layout(
     scene: &Scene,
     settings: &Settings,
     effects: &Effects,
-    tier: Tier,
+    kernel: Kernel,
 ) -> Result<Vec<u32>, Error> {
-    let packed = Packed::new(scene, settings, effects, tier);
+    let packed = Packed::new(scene, settings, effects, kernel);
     let [head, sphere, light, tail] = COUNTS;
     let job = Job {
         what: "echoing the layout",
-        module: &Module::echo(tier),
+        module: &Module::echo(kernel),
         inputs: &[
             (0, Space::Uniform, &packed.params),
             (1, Space::Storage, &packed.shapes),

@@ -4,10 +4,10 @@ use bytemuck::Pod;
 use glam::DVec3;
 
 use super::layout::{Layout, ParamValues, ShapeValues, double, single};
+use super::shader::Kernel;
 use crate::camera::{Camera, NEAR_T_MIN};
 use crate::effects::{Effect, Effects};
 use crate::geometry::{Ellipsoid, ellipsoids, shape_indices};
-use crate::precision::Tier;
 use crate::scene::{Light, Scene};
 use crate::settings::{Secondary, Settings};
 use crate::tiles::TILE;
@@ -40,12 +40,12 @@ pub(super) struct Low {
 }
 
 impl Packed {
-    /// Packs `scene` for a pipeline that simulates `effects` at `tier`.
-    pub(super) fn new(scene: &Scene, settings: &Settings, effects: &Effects, tier: Tier) -> Self {
-        match tier {
-            Tier::Fast => pack::<single::Layout>(scene, settings, effects, false),
-            Tier::Robust => pack::<single::Layout>(scene, settings, effects, true),
-            Tier::Double => pack::<double::Layout>(scene, settings, effects, false),
+    /// Packs `scene` for a pipeline that simulates `effects` with `kernel`.
+    pub(super) fn new(scene: &Scene, settings: &Settings, effects: &Effects, kernel: Kernel) -> Self {
+        if kernel.is_double() {
+            pack::<double::Layout>(scene, settings, effects, false)
+        } else {
+            pack::<single::Layout>(scene, settings, effects, kernel.carries_low())
         }
     }
 }

@@ -2,9 +2,8 @@
 
 use super::device::Gpu;
 use super::error::Error;
-use super::shader::Module;
+use super::shader::{Kernel, Module};
 use crate::effects::{Effect, EffectSet};
-use crate::precision::Tier;
 use crate::scene::Scene;
 use crate::settings::{Secondary, Settings, Specular};
 
@@ -16,7 +15,7 @@ pub(super) const MAX_FEW: usize = 16;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Specialisation {
     /// The kernel.
-    pub tier: Tier,
+    pub kernel: Kernel,
     /// The effects that it simulates.
     pub effects: EffectSet,
     /// Whether secondary rays skip their own sphere.
@@ -33,10 +32,10 @@ pub struct Specialisation {
 
 impl Specialisation {
     /// For `scene` with `effects` under `settings`.
-    pub fn new(scene: &Scene, settings: &Settings, effects: EffectSet, tier: Tier) -> Self {
+    pub fn new(scene: &Scene, settings: &Settings, effects: EffectSet, kernel: Kernel) -> Self {
         let few = scene.spheres.len().max(scene.lights.len()) <= MAX_FEW;
         Self {
-            tier,
+            kernel,
             effects,
             skip_self: settings.secondary == Secondary::SkipSelf,
             blinn: settings.specular == Specular::Blinn,
@@ -74,7 +73,7 @@ pub const ENTRY_POINT: &str = "render_tiles";
 
 /// Compiles the render kernel.
 pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<wgpu::ComputePipeline, Error> {
-    let module = gpu.shader_module(&Module::render(specialisation.tier, specialisation.few.is_some()))?;
+    let module = gpu.shader_module(&Module::render(specialisation.kernel, specialisation.few.is_some()))?;
     gpu.checked("compiling the kernel", || {
         gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(ENTRY_POINT),

@@ -16,7 +16,6 @@ use super::shader::{Kernel, Module};
 use crate::camera::NEAR_T_MIN;
 use crate::effects::EffectSet;
 use crate::geometry::{Ellipsoid, range_factor, shape_indices};
-use crate::precision::Tier;
 use crate::scene::{Light, Sphere};
 
 /// Rays of a dispatch at the most: some milliseconds on the slowest device seen.
@@ -184,11 +183,12 @@ pub struct Prober<'a> {
 }
 
 impl<'a> Prober<'a> {
-    /// Composes the module; [`Error::NoDevice`] where the device cannot calculate in `f64` and the kernel does.
+    /// Composes the module; [`Error::NoDevice`] where the device refuses the tier.
     pub fn new(gpu: &'a Gpu, kernel: Kernel) -> Result<Self, Error> {
-        if kernel.is_double() && !gpu.info.f64 {
-            return Err(Error::NoDevice(format!("{} cannot calculate in f64", gpu.info)));
-        }
+        let kernel = match kernel {
+            Kernel::Tier(tier) => gpu.kernel(tier)?,
+            kernel => kernel,
+        };
         let module = gpu.shader_module(&Module::probe(kernel))?;
         Ok(Self { gpu, kernel, module, pipelines: HashMap::new(), busy: Duration::ZERO })
     }
@@ -246,9 +246,8 @@ impl<'a> Prober<'a> {
         if self.pipelines.contains_key(&question) {
             return Ok(());
         }
-        let tier = if self.kernel.is_double() { Tier::Double } else { Tier::Fast };
         let specialisation = Specialisation {
-            tier,
+            kernel: self.kernel,
             effects: EffectSet::ALL,
             skip_self: true,
             blinn: false,

@@ -89,10 +89,10 @@ struct Kernel {
 impl<'a> GpuRenderer<'a> {
     /// Prepares `scene` for `gpu`; the kernel is compiled when the first tile needs it.
     pub fn new(gpu: &'a Gpu, scene: &Scene, settings: &Settings, effects: &Effects, tier: Tier) -> Result<Self, Error> {
-        gpu.require(tier)?;
+        let kernel = gpu.kernel(tier)?;
         let (scene, settings) = in_range(scene, settings);
         let (scene, settings) = (scene.as_ref(), &settings);
-        let packed = Packed::new(scene, settings, effects, tier);
+        let packed = Packed::new(scene, settings, effects, kernel);
         check_fits(gpu, &packed)?;
         let camera = Camera::new(scene, settings);
         let samples = u64::from(settings.samples * settings.samples);
@@ -109,7 +109,7 @@ impl<'a> GpuRenderer<'a> {
             picture_tiles: u64::from(scene.width.div_ceil(TILE)) * u64::from(scene.height.div_ceil(TILE)),
             background: settings.quantize.levels(scene.background),
             kernel: None,
-            kernel_inputs: Inputs { packed, specialisation: Specialisation::new(scene, settings, effects.set, tier) },
+            kernel_inputs: Inputs { packed, specialisation: Specialisation::new(scene, settings, effects.set, kernel) },
             tiles_per_dispatch: first.clamp(1, u64::from(MAX_DISPATCH_TILES)) as u32,
             times: DeviceTimes::default(),
             timestamps: None,

@@ -55,7 +55,8 @@ impl SelfTest {
             let Self { pairs, sum_mismatches, product_mismatches } = test;
             return Err(Error::NoDevice(format!(
                 "{} does not keep error-free transforms: of {pairs} pairs, {sum_mismatches} sums and \
-                 {product_mismatches} products are off. Precision `robust` needs them; `double` and `--device cpu` do not",
+                 {product_mismatches} products are off. Precision `robust` needs them, and `double` where a \
+                 device has no f64; `--device cpu` does not",
                 gpu.info
             )));
         }

@@ -24,6 +24,8 @@ macro_rules! part {
 pub enum Kernel {
     /// The kernel of a tier, which renders.
     Tier(Tier),
+    /// The kernel of [`Tier::Double`] where the device has no `f64`: pairs of `f32` up to the roots.
+    Pairs,
     /// The schoolbook formula in `f32`: for study only.
     Schoolbook,
     /// The robust kernel whose error-free transforms are left to the compiler: for study only.
@@ -35,6 +37,7 @@ impl Kernel {
     pub fn name(self) -> &'static str {
         match self {
             Self::Tier(tier) => tier.name(),
+            Self::Pairs => "pairs",
             Self::Schoolbook => "schoolbook",
             Self::NoBarrier => "no-barrier",
         }
@@ -42,7 +45,7 @@ impl Kernel {
 
     /// Whether numbers carry what rounding took from them.
     pub fn carries_low(self) -> bool {
-        matches!(self, Self::Tier(Tier::Robust) | Self::NoBarrier)
+        matches!(self, Self::Tier(Tier::Robust) | Self::Pairs | Self::NoBarrier)
     }
 
     /// Whether it calculates in `f64`.
@@ -79,16 +82,17 @@ fn data_parts(kernel: Kernel, storage: Storage) -> Vec<Part> {
 fn intersection_parts(kernel: Kernel, storage: Storage) -> Vec<Part> {
     let mut parts = vec![part!("effects.wgsl")];
     parts.extend(data_parts(kernel, storage));
-    match kernel {
-        Kernel::Tier(Tier::Fast | Tier::Double) => parts.push(part!("kernel_plain.wgsl")),
-        Kernel::Tier(Tier::Robust) => {
-            parts.extend([part!("barrier.wgsl"), part!("eft.wgsl"), part!("kernel_robust.wgsl")]);
-        }
-        Kernel::NoBarrier => {
-            parts.extend([part!("barrier_none.wgsl"), part!("eft.wgsl"), part!("kernel_robust.wgsl")]);
-        }
-        Kernel::Schoolbook => parts.push(part!("kernel_schoolbook.wgsl")),
-    }
+    let [real, pair] = [part!("distance_real.wgsl"), part!("distance_pair.wgsl")];
+    let [single_roots, pair_roots] = [part!("roots_single.wgsl"), part!("roots_pair.wgsl")];
+    let [barrier, no_barrier] = [part!("barrier.wgsl"), part!("barrier_none.wgsl")];
+    let (eft, robust) = (part!("eft.wgsl"), part!("kernel_robust.wgsl"));
+    parts.extend(match kernel {
+        Kernel::Tier(Tier::Fast | Tier::Double) => vec![real, part!("kernel_plain.wgsl")],
+        Kernel::Tier(Tier::Robust) => vec![real, barrier, eft, single_roots, robust],
+        Kernel::Pairs => vec![barrier, eft, pair, pair_roots, robust],
+        Kernel::NoBarrier => vec![real, no_barrier, eft, single_roots, robust],
+        Kernel::Schoolbook => vec![real, part!("kernel_schoolbook.wgsl")],
+    });
     parts.push(part!("intersect.wgsl"));
     parts
 }
@@ -102,9 +106,9 @@ pub struct Module {
 }
 
 impl Module {
-    /// The module that renders tiles at `tier`, for few spheres and lights or for any number.
-    pub fn render(tier: Tier, few: bool) -> Self {
-        let mut parts = intersection_parts(Kernel::Tier(tier), if few { Storage::Few } else { Storage::Many });
+    /// The module that renders tiles with `kernel`, for few spheres and lights or for any number.
+    pub fn render(kernel: Kernel, few: bool) -> Self {
+        let mut parts = intersection_parts(kernel, if few { Storage::Few } else { Storage::Many });
         parts.extend([part!("shade.wgsl"), part!("trace.wgsl"), part!("main.wgsl")]);
         Self::join(parts)
     }
@@ -121,8 +125,8 @@ impl Module {
     }
 
     /// The module that writes back what it reads.
-    pub fn echo(tier: Tier) -> Self {
-        let mut parts = data_parts(Kernel::Tier(tier), Storage::Many);
+    pub fn echo(kernel: Kernel) -> Self {
+        let mut parts = data_parts(kernel, Storage::Many);
         parts.push(part!("echo.wgsl"));
         Self::join(parts)
     }

@@ -59,6 +59,7 @@ impl Row {
 fn judged_as(kernel: Kernel) -> Tier {
     match kernel {
         Kernel::Tier(tier) => tier,
+        Kernel::Pairs => Tier::Double,
         Kernel::Schoolbook => Tier::Fast,
         Kernel::NoBarrier => Tier::Robust,
     }
@@ -162,7 +163,9 @@ impl Shared {
         // Pictures and scenes are for tiers only.
         let picture = |make: fn(&Gpu, Tier) -> Result<Metrics, Error>| match kernel {
             Kernel::Tier(tier) => make(prober.gpu(), tier).map(Some),
-            Kernel::Schoolbook | Kernel::NoBarrier => Ok(None),
+            // On a device without f64 this is what `double` renders with; elsewhere no picture is.
+            Kernel::Pairs if !prober.gpu().info.f64 => make(prober.gpu(), Tier::Double).map(Some),
+            Kernel::Pairs | Kernel::Schoolbook | Kernel::NoBarrier => Ok(None),
         };
         match case.kind {
             Kind::Rays(_) => {

@@ -47,7 +47,6 @@ impl Contestant {
     pub(super) fn obstacle(self, gpu: Option<&Gpu>) -> Option<String> {
         match (self, gpu) {
             (Self::Device(_), None) => Some("no Vulkan device is used".into()),
-            (Self::Device(Tier::Double), Some(gpu)) if !gpu.info.f64 => Some("the device has no f64 in shaders".into()),
             _ => None,
         }
     }

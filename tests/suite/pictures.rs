@@ -175,7 +175,7 @@ fn gpu_counts_the_rays_of_the_reference() {
 
 /// The tiers that this device can run.
 fn tiers(gpu: &gpu::Gpu) -> impl Iterator<Item = Tier> {
-    Tier::ALL.into_iter().filter(|&tier| gpu.require(tier).is_ok())
+    Tier::ALL.into_iter().filter(|&tier| gpu.kernel(tier).is_ok())
 }
 
 /// Precision above `fast`: hard scenes too, and at every tier what is left out changes no byte.
@@ -208,7 +208,7 @@ fn auto_picks_a_tier_that_covers_the_scene() {
         let scene = scene(&file);
         let effects = Effects::of(&scene, &settings);
         let selection = Selection::of(&scene, &effects, precision::Request(None), gpu.ladder());
-        if gpu.require(selection.tier).is_ok() {
+        if gpu.kernel(selection.tier).is_ok() {
             let (picture, _) = gpu_picture(&gpu, selection.tier, &scene, &settings, &effects);
             assert_explained(&short(&file), &picture, &scene, &settings, selection.tier);
         }

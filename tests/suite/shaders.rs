@@ -2,7 +2,7 @@
 
 use trueray::effects::{EffectSet, Effects, Request};
 use trueray::gpu::layout::{double, single};
-use trueray::gpu::{ENTRY_POINT, Module, SelfTest, Specialisation, echo_layout};
+use trueray::gpu::{ENTRY_POINT, Kernel, Module, SelfTest, Specialisation, echo_layout};
 
 use trueray::precision::Tier;
 use trueray::settings::Settings;
@@ -10,8 +10,9 @@ use trueray::settings::Settings;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 /// Every kernel, for any number of spheres and for few.
-fn kinds() -> impl Iterator<Item = (Tier, Option<[u32; 2]>)> {
-    Tier::ALL.into_iter().flat_map(|tier| [(tier, None), (tier, Some([3, 2]))])
+fn kinds() -> impl Iterator<Item = (Kernel, Option<[u32; 2]>)> {
+    let kernels = Tier::ALL.map(Kernel::Tier).into_iter().chain([Kernel::Pairs]);
+    kernels.flat_map(|kernel| [(kernel, None), (kernel, Some([3, 2]))])
 }
 
 fn validate(module: &naga::Module) -> naga::valid::ModuleInfo {
@@ -20,14 +21,14 @@ fn validate(module: &naga::Module) -> naga::valid::ModuleInfo {
 
 #[test]
 fn every_effect_set_is_valid() {
-    for (tier, few) in kinds() {
-        let module = Module::render(tier, few.is_some()).parse().unwrap();
+    for (kernel, few) in kinds() {
+        let module = Module::render(kernel, few.is_some()).parse().unwrap();
         let info = validate(&module);
         for effects in EffectSet::every() {
             for flags in 0..8 {
                 let [skip_self, blinn, count_rays] = [1, 2, 4].map(|bit| flags & bit != 0);
                 let specialisation =
-                    Specialisation { tier, effects, skip_self, blinn, few, samples: 1 + flags / 4, count_rays };
+                    Specialisation { kernel, effects, skip_self, blinn, few, samples: 1 + flags / 4, count_rays };
                 let constants = specialisation.constants().into_iter().map(|(name, value)| (name.to_owned(), value));
                 let constants = constants.collect();
                 let entry_point = Some((naga::ShaderStage::Compute, ENTRY_POINT));
@@ -42,11 +43,11 @@ fn every_effect_set_is_valid() {
 /// A constant that the shader does not declare would be ignored silently by the validation above.
 #[test]
 fn every_constant_is_an_override_and_every_override_is_set() {
-    for (tier, few) in kinds() {
-        let module = Module::render(tier, few.is_some()).parse().unwrap();
+    for (kernel, few) in kinds() {
+        let module = Module::render(kernel, few.is_some()).parse().unwrap();
         let mut declared: Vec<_> = module.overrides.iter().map(|(_, o)| o.name.clone().unwrap()).collect();
         let specialisation = Specialisation {
-            tier,
+            kernel,
             effects: EffectSet::ALL,
             skip_self: true,
             blinn: true,
@@ -87,7 +88,7 @@ fn structs_lie_in_memory_as_the_shader_reads_them() {
 }
 
 fn assert_layout(tier: Tier, structs: [(&str, Fields, usize); 4]) {
-    let module = Module::render(tier, false).parse().unwrap();
+    let module = Module::render(Kernel::Tier(tier), false).parse().unwrap();
     for (name, fields, size) in structs {
         let (_, found) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).unwrap();
         let naga::TypeInner::Struct { members, span } = &found.inner else { panic!("{name}") };
@@ -100,8 +101,8 @@ fn assert_layout(tier: Tier, structs: [(&str, Fields, usize); 4]) {
 
 #[test]
 fn bindings_are_numbered_without_gaps() {
-    for (tier, few) in kinds() {
-        let module = Module::render(tier, few.is_some()).parse().unwrap();
+    for (kernel, few) in kinds() {
+        let module = Module::render(kernel, few.is_some()).parse().unwrap();
         let mut bindings: Vec<_> =
             module.global_variables.iter().filter_map(|(_, v)| Some((v.binding?.binding, v.name.clone()?))).collect();
         bindings.sort();
@@ -126,7 +127,7 @@ fn bindings_are_numbered_without_gaps() {
 
 #[test]
 fn an_error_in_the_shader_names_its_file_and_line() {
-    let mut module = Module::render(Tier::Fast, false);
+    let mut module = Module::render(Kernel::Tier(Tier::Fast), false);
     let line = 1 + module.text.lines().position(|line| line.contains("fn trace(")).unwrap() as u32;
     let (file, line_in_file) = module.place(line);
     assert_eq!(file, "shaders/trace.wgsl");
@@ -145,7 +146,7 @@ fn error_free_transforms_are_exact_on_this_device() {
     let test = SelfTest::run(&gpu).unwrap();
     // A device that fails is refused by the tier that needs them; the software drivers of the CI do not.
     assert_eq!((test.sum_mismatches, test.product_mismatches), (0, 0), "{}", gpu.info);
-    gpu.require(Tier::Robust).unwrap();
+    assert_eq!(gpu.kernel(Tier::Robust), Ok(Kernel::Tier(Tier::Robust)));
 }
 
 /// The third lock: what the device reads is what the host packed, field by field.
@@ -174,7 +175,7 @@ fn the_device_reads_every_field_where_the_host_wrote_it() {
     for (sphere, index) in [(1, 0), (2, 1)] {
         expected[sphere].insert(7, index);
     }
-    for tier in Tier::ALL.into_iter().filter(|&tier| gpu.require(tier).is_ok()) {
-        assert_eq!(echo_layout(&gpu, &scene, &settings, &effects, tier).unwrap(), expected.concat(), "{tier}");
+    for kernel in Tier::ALL.into_iter().filter_map(|tier| gpu.kernel(tier).ok()) {
+        assert_eq!(echo_layout(&gpu, &scene, &settings, &effects, kernel).unwrap(), expected.concat(), "{kernel:?}");
     }
 }

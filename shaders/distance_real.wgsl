@@ -1,0 +1,19 @@
+// How far along a ray: one number.
+
+alias Distance = real;
+
+fn distance_of(t: real) -> Distance {
+    return t;
+}
+
+fn nearest_real(t: Distance) -> real {
+    return t;
+}
+
+fn is_nearer(a: Distance, b: Distance) -> bool {
+    return a < b;
+}
+
+fn is_beyond(t: Distance, t_min: real) -> bool {
+    return t > t_min;
+}
