@@ -32,7 +32,7 @@ pub(super) fn pareto(study: &Study) -> Markup {
     let (exact, inexact): (Vec<&Point>, Vec<&Point>) = points.iter().partition(|point| point.error.differing == 0);
     let lane = if exact.is_empty() { 0.0 } else { exact.len() as f64 * 24.0 + 16.0 };
     let above = if inexact.is_empty() { 0.0 } else { 230.0 };
-    let frame = Frame { left: 76.0, right: 600.0, top: 44.0, bottom: 44.0 + above + lane };
+    let frame = Frame { left: 76.0, right: 740.0, top: 44.0, bottom: 44.0 + above + lane };
     let times: Vec<_> = points.iter().map(|point| &point.wall).collect();
     let x = Axis::logarithmic(extent(&times).into_iter(), frame.left + 12.0, frame.right);
     let edge = frame.top + above;

@@ -15,4 +15,5 @@ mod oracle;
 mod parse;
 mod pictures;
 mod shaders;
+mod study;
 mod support;
