@@ -78,6 +78,9 @@ pub(super) fn pareto(study: &Study) -> Markup {
     drawing(760.0, frame.bottom + 52.0, "Error against time for every tier and the CPU", &content)
 }
 
+/// A value, and the least and greatest of it.
+type Reading = (f64, [f64; 2]);
+
 /// One line of a plot over steps.
 struct Line<'a> {
     class: &'static str,
@@ -133,7 +136,7 @@ pub(super) fn over(series: &Series, what: &str, step: impl Fn(&Point) -> u32) ->
     let place = |point: &Point| values.iter().position(|value| *value == step(point)).unwrap_or(0);
     let mut of_contestants = Contestant::ALL.to_vec();
     of_contestants.retain(|contestant| series.points.iter().any(|point| point.contestant == *contestant));
-    let line = |contestant: &Contestant, read: &dyn Fn(&Point) -> Option<(f64, [f64; 2])>| {
+    let line = |contestant: &Contestant, read: &dyn Fn(&Point) -> Option<Reading>| {
         let own = series.points.iter().filter(|point| point.contestant == *contestant);
         let mut points: Vec<_> =
             own.filter_map(|point| read(point).map(|(value, ends)| (place(point), value, ends))).collect();

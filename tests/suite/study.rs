@@ -13,7 +13,9 @@ use crate::support::{gpu, scene_of};
 
 fn sample(runs: &[f64]) -> Sample {
     let mut sample = Sample::default();
-    runs.iter().for_each(|run| sample.push(*run));
+    for run in runs {
+        sample.push(*run);
+    }
     sample
 }
 
