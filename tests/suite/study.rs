@@ -25,6 +25,7 @@ fn statistics_of_known_numbers() {
     assert_eq!((odd.median(), odd.min(), odd.max(), odd.outliers()), (3.0, 1.0, 5.0, 0));
     assert_eq!(odd.runs(), [5.0, 1.0, 3.0]);
     assert_eq!(sample(&[4.0, 1.0, 2.0, 3.0]).median(), 2.5);
+    assert_eq!(sample(&[4.0, 1.0, 2.0]).spread(), 1.5);
     assert_eq!(sample(&[7.0]).median(), 7.0);
     assert!(sample(&[]).median().is_nan());
     // Quartiles 2 and 4, fences at −1 and 7.
