@@ -9,7 +9,7 @@ use super::error::{Distance, Error, linear_colors};
 use super::sample::Sample;
 use crate::compare::Explanation;
 use crate::cpu::Reference;
-use crate::effects::{EffectSet, Effects};
+use crate::effects::{Effect, EffectSet, Effects};
 use crate::engine::Backend;
 use crate::film::Picture;
 use crate::gpu::{self, DeviceInfo, Gpu};
@@ -31,6 +31,14 @@ pub struct Plan {
     pub depths: Vec<u32>,
     /// Sides of the grids of samples to compare.
     pub sides: Vec<u32>,
+}
+
+impl Plan {
+    /// How many rounds of so many ms there is time for.
+    fn affordable(&self, round_ms: f64) -> usize {
+        let affordable = (self.seconds * 1e3 / round_ms) as usize;
+        affordable.max(LEAST_RUNS).min(self.runs)
+    }
 }
 
 /// A scene and how to render it.
@@ -183,6 +191,11 @@ pub fn study(subject: &Subject, plan: &Plan) -> Result<Study, Error> {
     let variants: Vec<_> = plan.sides.iter().map(|&side| with_side(side)).collect();
     let samples = series(subject, plan, &mut contestants, &mut skipped, &variants, Some(finer))?;
 
+    // Its variants take about as long as what the same tier took.
+    let main = gpu.map_or(Contestant::CpuDouble, |_| Contestant::Device(selection.tier));
+    let one_ms =
+        precision.points.iter().find(|point| point.contestant == main).map_or(0.0, |point| point.wall.median());
+    let variants_ms = one_ms * (Effect::ALL.len() + 2) as f64;
     let backend = gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, selection.tier));
     Ok(Study {
         scene: subject.name.to_owned(),
@@ -199,7 +212,7 @@ pub fn study(subject: &Subject, plan: &Plan) -> Result<Study, Error> {
         precision,
         depth,
         samples,
-        effect_cost: effect_cost(backend, scene, settings, plan.runs)?,
+        effect_cost: effect_cost(backend, scene, settings, plan.affordable(variants_ms))?,
     })
 }
 
@@ -231,8 +244,7 @@ fn series(
             }
         }
     }
-    let affordable = (plan.seconds * 1e3 / round_ms) as usize;
-    let runs = affordable.max(LEAST_RUNS).min(plan.runs);
+    let runs = plan.affordable(round_ms);
     for _ in 0..runs {
         for (runner, point) in &mut measured {
             let run = runner.run()?;

@@ -32,7 +32,7 @@ pub(super) fn pareto(study: &Study) -> Markup {
     let (exact, inexact): (Vec<&Point>, Vec<&Point>) = points.iter().partition(|point| point.error.differing == 0);
     let lane = if exact.is_empty() { 0.0 } else { exact.len() as f64 * 24.0 + 16.0 };
     let above = if inexact.is_empty() { 0.0 } else { 230.0 };
-    let frame = Frame { left: 76.0, right: 600.0, top: 44.0, bottom: 44.0 + above + lane };
+    let frame = Frame { left: 76.0, right: 740.0, top: 44.0, bottom: 44.0 + above + lane };
     let times: Vec<_> = points.iter().map(|point| &point.wall).collect();
     let x = Axis::logarithmic(extent(&times).into_iter(), frame.left + 12.0, frame.right);
     let edge = frame.top + above;
@@ -77,6 +77,9 @@ pub(super) fn pareto(study: &Study) -> Markup {
     };
     drawing(760.0, frame.bottom + 52.0, "Error against time for every tier and the CPU", &content)
 }
+
+/// A value, and the least and greatest of it.
+type Reading = (f64, [f64; 2]);
 
 /// One line of a plot over steps.
 struct Line<'a> {
@@ -133,7 +136,7 @@ pub(super) fn over(series: &Series, what: &str, step: impl Fn(&Point) -> u32) ->
     let place = |point: &Point| values.iter().position(|value| *value == step(point)).unwrap_or(0);
     let mut of_contestants = Contestant::ALL.to_vec();
     of_contestants.retain(|contestant| series.points.iter().any(|point| point.contestant == *contestant));
-    let line = |contestant: &Contestant, read: &dyn Fn(&Point) -> Option<(f64, [f64; 2])>| {
+    let line = |contestant: &Contestant, read: &dyn Fn(&Point) -> Option<Reading>| {
         let own = series.points.iter().filter(|point| point.contestant == *contestant);
         let mut points: Vec<_> =
             own.filter_map(|point| read(point).map(|(value, ends)| (place(point), value, ends))).collect();

@@ -166,7 +166,7 @@ fn findings(study: &Study) -> Vec<String> {
         all.fold((0, 0), |(outliers, runs), point| (outliers + point.wall.outliers(), runs + point.wall.runs().len()));
     if outliers > 0 {
         findings.push(format!(
-            "Caution: {outliers} of {runs} runs are outliers (beyond Tukey's fences); something else was using the machine. \
+            "Caution: outliers (beyond Tukey's fences) among the {runs} runs: {outliers}; something else was using the machine. \
              Medians are hardly moved by this."
         ));
     }
@@ -178,7 +178,7 @@ fn truth(series: &Series) -> String {
         format!(
             "Error: root of the mean squared difference of the linear colours, before they are clamped and quantised, between \
              CPU f64 and its own picture with depth {} and {} samples per pixel, where 1 is full intensity. The tiers' own \
-             errors are in the table; they are smaller by far.",
+             errors are in the table.",
             truth.depth, truth.samples
         )
     })
@@ -247,7 +247,7 @@ fn method() -> Markup {
                 "Times are wall-clock times from the prepared scene to rows of pixels in memory. “On device” is the device's \
                  own clock around its dispatches, without transfers and without waiting; – where it has none."
             }
-            li { "Outliers lie more than 1.5 interquartile ranges beyond the quartiles (Tukey's fences)." }
+            li { "Outliers lie more than 1.5 interquartile ranges beyond the quartiles (Tukey's fences); a spread is wide where the fastest and the slowest run differ by more than half the median." }
             li {
                 "“Pixels off reference” compares with the CPU reference in f64 at the same depth and samples; it is " em { "unexplained" }
                 " where the reference finds no decision (silhouette, shadow edge, quantisation step …) near enough for rounding to \

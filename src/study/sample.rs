@@ -51,6 +51,11 @@ impl Sample {
         self.quantile(1.0)
     }
 
+    /// From the least to the greatest run, as a part of the median; NaN without runs.
+    pub fn spread(&self) -> f64 {
+        (self.max() - self.min()) / self.median()
+    }
+
     /// How many runs lie outside Tukey's fences, 1.5 times the interquartile range beyond the quartiles (J. W. Tukey,
     /// Exploratory Data Analysis, 1977): something else was running.
     pub fn outliers(&self) -> usize {

@@ -43,9 +43,13 @@ impl Study {
     }
 }
 
+/// Runs that differ by more than this part of their median deserve a word of caution.
+const WIDE: f64 = 0.5;
+
 /// What can be trusted of a sample, in a word for the last column; empty where all is well.
 pub(super) fn caution(sample: &Sample) -> String {
     match sample.outliers() {
+        0 if sample.spread() > WIDE => "wide spread".into(),
         0 => String::new(),
         1 => "1 outlier".into(),
         count => format!("{count} outliers"),
@@ -72,7 +76,7 @@ impl Series {
             let Point { contestant, depth, samples, wall, unexplained, .. } = point;
             let distance = point.from_truth.unwrap_or(point.error);
             let on_device = point.on_device.as_ref().map_or_else(|| "–".into(), |sample| time(sample.median()));
-            let range = format!("{} … {}", short(wall.min()), time(wall.max()));
+            let range = format!("{} … {} ms", short(wall.min()), short(wall.max()));
             let linear = distance.rms_linear.map_or_else(|| "–".into(), short);
             let median = time(wall.median());
             let _ = writeln!(

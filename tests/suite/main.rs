@@ -16,5 +16,6 @@ mod parse;
 mod pictures;
 mod shaders;
 mod stress;
+mod study;
 mod support;
 mod tiles;
