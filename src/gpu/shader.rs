@@ -75,12 +75,14 @@ fn intersection_parts(kernel: Kernel, storage: Storage) -> Vec<Part> {
         },
     ];
     match kernel {
+        Kernel::Tier(Tier::Double) => {}
+        Kernel::NoBarrier => parts.push(part!("barrier_none.wgsl")),
+        Kernel::Tier(Tier::Fast | Tier::Robust) | Kernel::Schoolbook => parts.push(part!("barrier.wgsl")),
+    }
+    match kernel {
         Kernel::Tier(Tier::Fast | Tier::Double) => parts.push(part!("kernel_plain.wgsl")),
-        Kernel::Tier(Tier::Robust) => {
-            parts.extend([part!("barrier.wgsl"), part!("eft.wgsl"), part!("kernel_robust.wgsl")]);
-        }
-        Kernel::NoBarrier => {
-            parts.extend([part!("barrier_none.wgsl"), part!("eft.wgsl"), part!("kernel_robust.wgsl")]);
+        Kernel::Tier(Tier::Robust) | Kernel::NoBarrier => {
+            parts.extend([part!("eft.wgsl"), part!("kernel_robust.wgsl")]);
         }
         Kernel::Schoolbook => parts.push(part!("kernel_schoolbook.wgsl")),
     }
