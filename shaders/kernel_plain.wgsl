@@ -52,19 +52,23 @@ struct Approach {
 
 fn approach(ray: Ray, sphere: u32) -> Approach {
     let shape = shapes[sphere];
-    var origin = ray.origin - shape.center;
+    let from_center = difference(ray.origin, shape.center);
+    var origin = from_center.hi;
+    var origin_low = from_center.lo;
     var direction = ray.direction;
     var a = ray.a;
     var inv_a = ray.inv_a;
     if ELLIPSOIDS {
         origin *= shape.inv_scale;
+        origin_low *= shape.inv_scale;
         direction *= shape.inv_scale;
         a = dot(direction, direction);
         inv_a = real(1.0) / a;
     }
     let b = -dot(origin, direction);
-    // An error of b/a moves the point along the ray, which changes its distance to second order only.
-    let perpendicular = along(origin, direction, b * inv_a);
+    // What the difference lost matters for the closest point alone. An error of b/a moves the point along the ray, which
+    // changes its distance to second order only.
+    let perpendicular = along(origin, direction, b * inv_a) + origin_low;
     let discriminant = shape.radius * shape.radius - dot(perpendicular, perpendicular);
     return Approach(origin, direction, a, b, perpendicular, discriminant);
 }

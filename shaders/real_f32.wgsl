@@ -11,6 +11,19 @@ fn is_finite(x: real) -> bool {
     return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
 }
 
+// a - b and what rounding takes from it (two_sum of eft.wgsl); nothing breaks where a compiler loses the latter.
+struct Difference {
+    hi: vec3r,
+    lo: vec3r,
+}
+
+fn difference(a: vec3r, b: vec3r) -> Difference {
+    let hi = a - b;
+    let b_part = barrier3(hi) - a;
+    let a_part = barrier3(hi - b_part);
+    return Difference(hi, (a - a_part) - (b + b_part));
+}
+
 // origin + t direction where the two nearly cancel: the product of the upper halves is exact, so that only the sum is rounded,
 // and the rest is small.
 fn along(origin: vec3r, direction: vec3r, t: real) -> vec3r {

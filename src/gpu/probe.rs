@@ -219,9 +219,10 @@ impl<'a> Prober<'a> {
             let lights = batch.lights.iter().skip(chunk * MAX_RAYS).take(rays.len());
             let lights: Vec<_> = lights.map(|&position| Light { position, intensity: DVec3::ONE }).collect();
             let bounces = (question == Question::Bounce).then_some(batch.bounces);
-            let inputs = match self.kernel.is_double() {
-                false => pack::<single::Layout>(rays, surfaces, &lights, first, bounces),
-                true => pack::<double::Layout>(rays, surfaces, &lights, first, bounces),
+            let inputs = if self.kernel.is_double() {
+                pack::<double::Layout>(rays, surfaces, &lights, first, bounces)
+            } else {
+                pack::<single::Layout>(rays, surfaces, &lights, first, bounces)
             };
             self.dispatch(question, &inputs, rays.len(), first, &mut answers)?;
         }
@@ -233,9 +234,10 @@ impl<'a> Prober<'a> {
         self.prepare(Question::Nearest)?;
         let mut answers = Vec::with_capacity(batch.rays.len());
         for (rays, shapes) in batch.rays.chunks(MAX_RAYS).zip(batch.shapes.chunks(MAX_RAYS)) {
-            let inputs = match self.kernel.is_double() {
-                false => pack_raw::<single::Layout>(rays, shapes),
-                true => pack_raw::<double::Layout>(rays, shapes),
+            let inputs = if self.kernel.is_double() {
+                pack_raw::<double::Layout>(rays, shapes)
+            } else {
+                pack_raw::<single::Layout>(rays, shapes)
             };
             self.dispatch(Question::Nearest, &inputs, rays.len(), 0, &mut answers)?;
         }

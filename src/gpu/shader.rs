@@ -87,11 +87,12 @@ fn intersection_parts(kernel: Kernel, storage: Storage) -> Vec<Part> {
     let [barrier, no_barrier] = [part!("barrier.wgsl"), part!("barrier_none.wgsl")];
     let (eft, robust) = (part!("eft.wgsl"), part!("kernel_robust.wgsl"));
     parts.extend(match kernel {
-        Kernel::Tier(Tier::Fast | Tier::Double) => vec![real, part!("kernel_plain.wgsl")],
+        Kernel::Tier(Tier::Fast) => vec![barrier, real, part!("kernel_plain.wgsl")],
+        Kernel::Tier(Tier::Double) => vec![real, part!("kernel_plain.wgsl")],
         Kernel::Tier(Tier::Robust) => vec![real, barrier, eft, single_roots, robust],
         Kernel::Pairs => vec![barrier, eft, pair, pair_roots, robust],
         Kernel::NoBarrier => vec![real, no_barrier, eft, single_roots, robust],
-        Kernel::Schoolbook => vec![real, part!("kernel_schoolbook.wgsl")],
+        Kernel::Schoolbook => vec![barrier, real, part!("kernel_schoolbook.wgsl")],
     });
     parts.push(part!("intersect.wgsl"));
     parts

@@ -37,7 +37,7 @@ pub fn cost(gpu: &Gpu, kernels: &[Kernel], count: usize, seed: u64, runs: usize)
         for (prober, sample) in &mut probers {
             let before = prober.busy();
             prober.ask(Question::Nearest, &batch)?;
-            sample.push((prober.busy() - before).as_secs_f64() * 1e9 / tests);
+            sample.push(prober.busy().saturating_sub(before).as_secs_f64() * 1e9 / tests);
         }
     }
     let base = probers.first().map_or(f64::NAN, |(_, sample)| sample.median());

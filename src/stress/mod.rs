@@ -24,7 +24,7 @@ pub use truth::carried;
 use crate::gpu::{Error, Gpu, Kernel, Prober, Question};
 use crate::precision::Tier;
 use classes::{Case, Kind};
-use truth::{Expected, Given, expected, judge};
+use truth::{Expected, Given, cosines, expected, judge};
 
 /// One case on one kernel.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -174,7 +174,7 @@ impl Shared {
                 let truth = self.truths[given as usize].as_deref().unwrap_or_default();
                 Ok(Some(judge(&self.batch, &answers, truth, given, band(tier))))
             }
-            Kind::Lit(_) => self.measure_light(prober).map(Some),
+            Kind::Lit(_) => self.measure_light(prober, given).map(Some),
             Kind::ZeroScale => picture(|_, _| Ok(special::zero_scale())),
             Kind::NegativeScale => special::negative_scale(prober, &mut random, self.count).map(Some),
             Kind::BitPatterns => special::bit_patterns(prober, &mut random, 2 * self.count).map(Some),
@@ -187,12 +187,18 @@ impl Shared {
         }
     }
 
-    /// Whether the light reaches the hits that it ought to reach, and no others.
-    fn measure_light(&self, prober: &mut Prober) -> Result<Metrics, Error> {
+    /// Whether the light reaches the hits that it ought to reach, and no others. Rays whose numbers, as the kernel got them,
+    /// are nearer to the horizon than the class says do not count.
+    fn measure_light(&self, prober: &mut Prober, given: Given) -> Result<Metrics, Error> {
+        const HORIZON: f64 = 0.99e-5;
         let answers = prober.ask(Question::Lit, &self.batch)?;
+        let cosines = cosines(&self.batch, given);
         let mut metrics = Metrics { count: answers.len() as u64, ..Metrics::default() };
         let (mut acne, mut leaks) = (0, 0);
-        for ((answer, ray), &lit) in answers.iter().zip(&self.batch.rays).zip(&self.lit) {
+        for (((answer, ray), &lit), cosine) in answers.iter().zip(&self.batch.rays).zip(&self.lit).zip(cosines) {
+            if cosine.abs() < HORIZON || (lit && cosine < 0.0) {
+                continue;
+            }
             if !answer.found || answer.surface != ray.first {
                 metrics.wrong_roots += u64::from(answer.found);
                 metrics.false_misses += u64::from(!answer.found);

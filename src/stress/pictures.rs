@@ -86,7 +86,7 @@ pub(super) fn mirrors(gpu: &Gpu, tier: Tier) -> Result<Metrics, Error> {
     for (kr, depth) in [(0.5_f64, 8_u32), (0.9, 8), (1.0, 6)] {
         let settings = Settings { max_depth: depth, ..Settings::exact() };
         let (rgb, not_finite) = render(gpu, tier, &corridor(kr, 0.1, 1.0, 0.0)?, &settings)?;
-        let bound: f64 = (0..=depth).map(|bounce| 0.1 * kr.powi(bounce as i32)).sum();
+        let bound: f64 = (0..=depth).map(|bounce| 0.1 * kr.powf(f64::from(bounce))).sum();
         let level = (255.0 * bound.min(1.0) + 0.5).floor();
         brighter += rgb.iter().filter(|&&value| f64::from(value) > level).count() as u64;
         metrics.count += u64::from(SIZE * SIZE);

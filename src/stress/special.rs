@@ -64,25 +64,25 @@ pub(super) fn negative_scale(prober: &mut Prober, random: &mut Random, count: us
 
 /// A number with any bits: NaN, infinities, denormals, zeros, any exponent, and now and then an ordinary one.
 fn any_number(random: &mut Random, double: bool) -> f64 {
+    const SINGLE_EXPONENT: u32 = 0xff << 23;
+    const DOUBLE_EXPONENT: u64 = 0x7ff << 52;
     let bits = random.bits();
     let pick = random.bits() % 8;
     if double {
-        const EXPONENT: u64 = 0x7ff << 52;
         return f64::from_bits(match pick {
-            0 => bits | EXPONENT,
-            1 => bits & !EXPONENT,
-            2 => (bits & 1 << 63) | EXPONENT,
+            0 => bits | DOUBLE_EXPONENT,
+            1 => bits & !DOUBLE_EXPONENT,
+            2 => (bits & 1 << 63) | DOUBLE_EXPONENT,
             3 => bits & 1 << 63,
             4 | 5 => bits,
             _ => return random.sign() * random.magnitude(-2.0, 2.0),
         });
     }
-    const EXPONENT: u32 = 0xff << 23;
     let bits = bits as u32;
     f64::from(f32::from_bits(match pick {
-        0 => bits | EXPONENT,
-        1 => bits & !EXPONENT,
-        2 => (bits & 1 << 31) | EXPONENT,
+        0 => bits | SINGLE_EXPONENT,
+        1 => bits & !SINGLE_EXPONENT,
+        2 => (bits & 1 << 31) | SINGLE_EXPONENT,
         3 => bits & 1 << 31,
         4 | 5 => bits,
         _ => return f64::from((random.sign() * random.magnitude(-2.0, 2.0)) as f32),
@@ -102,7 +102,7 @@ pub(super) fn bit_patterns(prober: &mut Prober, random: &mut Random, count: usiz
             // Three numbers in four are ordinary, so that the others reach deep into the kernel.
             let mut number = |ordinary: f64| {
                 next += 2;
-                if wild >> next & 3 == 0 { any_number(random, double) } else { ordinary }
+                if (wild >> next).is_multiple_of(4) { any_number(random, double) } else { ordinary }
             };
             let mut vector = |x: f64, y: f64, z: f64| [number(x), number(y), number(z)];
             let [ox, oy, oz] = vector(0.1, 0.2, 0.3);

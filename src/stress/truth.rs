@@ -148,3 +148,18 @@ pub(super) fn judge(batch: &Batch, answers: &[Answer], truth: &[Expected], given
     metrics.set_errors(errors);
     metrics
 }
+
+/// The true cosine between the normal and the light where each ray meets its first surface, seen from outside; NaN where it
+/// does not.
+pub(super) fn cosines(batch: &Batch, given: Given) -> Vec<f64> {
+    let cosine = |(ray, light): (&ProbeRay, &DVec3)| {
+        let (ray, surface) = (given.ray(ray), given.surface(&batch.surfaces[ray.first as usize]));
+        let light = if given == Given::Rounded { single(*light) } else { *light };
+        let roots = oracle::truth(ray.origin, ray.direction, surface.center, surface.scale).roots;
+        let t = roots.map_or(f64::NAN, |roots| roots[0].hi());
+        let place = ray.origin + ray.direction * t;
+        let normal = ((place - surface.center) / (surface.scale * surface.scale)).normalize();
+        normal.dot((light - place).normalize())
+    };
+    batch.rays.par_iter().zip(&batch.lights).map(cosine).collect()
+}

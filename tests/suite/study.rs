@@ -4,7 +4,7 @@ use std::process::{Command, Output, Stdio};
 
 use trueray::effects::Effects;
 use trueray::gpu::Gpu;
-use trueray::precision::{Request, Selection};
+use trueray::precision::{Request, Selection, Tier};
 use trueray::scene::Scene;
 use trueray::settings::Settings;
 use trueray::study::{COLUMNS, Contestant, Distance, Plan, Sample, Study, Subject, csv, html, study};
@@ -56,7 +56,7 @@ fn tiny() -> Scene {
 
 fn measure(scene: &Scene, gpu: Option<&Gpu>, settings: &Settings) -> Study {
     let effects = |settings: &Settings| Effects::of(scene, settings);
-    let selection = Selection::of(scene, &effects(settings), Request(None));
+    let selection = Selection::of(scene, &effects(settings), Request(None), &Tier::ALL);
     let subject = Subject { name: "tiny, <scene>", scene, settings, effects: &effects, gpu, selection: &selection };
     study(&subject, &Plan { runs: 1, seconds: 0.0, depths: Vec::new(), sides: vec![1, 2] }).unwrap()
 }
