@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::failure::{Failure, OK, OUTPUT, SCENE};
 use super::input::Input;
 use super::options::PictureOptions;
+use super::output::{out, outln};
 use super::render::{explanation, precision_explanation};
 use crate::effects::Effects;
 use crate::precision::{self, Selection, Tier};
@@ -99,19 +100,19 @@ impl Contents {
     }
 
     fn print(&self, name: &str) {
-        println!("{name}: {} × {}, {} spheres, {} lights", self.width, self.height, self.spheres, self.lights);
+        outln!("{name}: {} × {}, {} spheres, {} lights", self.width, self.height, self.spheres, self.lights);
         let corner = |[x, y, z]: DVec3Json| format!("({x}, {y}, {z})");
         if let (Some([low, high]), Some([least, greatest])) = (self.extent, self.semi_axes) {
-            println!("  extent       {} to {}", corner(low), corner(high));
-            println!("  semi-axes    {least} to {greatest}");
+            outln!("  extent       {} to {}", corner(low), corner(high));
+            outln!("  semi-axes    {least} to {greatest}");
         }
         if let Some(output) = &self.output {
-            println!("  output       {output}");
+            outln!("  output       {output}");
         }
         if self.refractive_spheres > 0 {
-            println!("  refraction   {} spheres with Kt > 0: cannot be rendered yet", self.refractive_spheres);
+            outln!("  refraction   {} spheres with Kt > 0: cannot be rendered yet", self.refractive_spheres);
         }
-        print!("{}{}", explanation(name, &self.effects), precision_explanation(&self.precision));
+        out!("{}{}", explanation(name, &self.effects), precision_explanation(&self.precision));
     }
 }
 
@@ -145,7 +146,7 @@ fn check_all(args: &Args) -> Result<u8, Failure> {
             if let Some(contents) = &contents {
                 contents.print(&input.name);
                 let warnings = input.parsed.diagnostics.iter().filter(|d| d.severity == Severity::Warning).count();
-                println!(
+                outln!(
                     "  {}",
                     if warnings == 0 { "no warnings".into() } else { format!("{} warnings", input.parsed.warnings) }
                 );
@@ -162,7 +163,7 @@ fn check_all(args: &Args) -> Result<u8, Failure> {
     }
     if args.json {
         let json = serde_json::to_string_pretty(&summaries).map_err(|e| Failure::new(OUTPUT, e.to_string()))?;
-        println!("{json}");
+        outln!("{json}");
     }
     Ok(code)
 }

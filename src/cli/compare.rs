@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::failure::{DIFFERENT, Failure, OK, USAGE};
 use super::input::Loaded;
 use super::options::{DeviceOptions, PictureOptions, device_name};
+use super::output::{errln, out, outln};
 use crate::compare::{Difference, Explanation, Limits, Verdict, heatmap, three_wide, verdict};
 use crate::cpu::{Judge, Reference};
 use crate::engine::{Backend, Engine, render_picture};
@@ -153,16 +154,16 @@ fn compare(args: &Args) -> Result<u8, Failure> {
     }
     if args.json {
         let report = Report { a, b, verdict, exceeded, difference, explanation, not_finite_pixels: not_finite };
-        println!("{}", serde_json::to_string_pretty(&report).map_err(|e| Failure::new(USAGE, e.to_string()))?);
+        outln!("{}", serde_json::to_string_pretty(&report).map_err(|e| Failure::new(USAGE, e.to_string()))?);
     } else {
-        print!("{}", difference.report(&a, &b));
+        out!("{}", difference.report(&a, &b));
         if let Some(explanation) = &explanation {
-            print!("{}", explanation.report());
+            out!("{}", explanation.report());
         }
         for limit in &exceeded {
-            println!("over the limit    {limit}");
+            outln!("over the limit    {limit}");
         }
-        println!("verdict           {verdict}");
+        outln!("verdict           {verdict}");
     }
     Ok(if verdict == Verdict::Different { DIFFERENT } else { OK })
 }
@@ -216,7 +217,7 @@ fn read(path: &Path, lenient: bool) -> Result<Picture, Failure> {
         Failure::new(USAGE, format!("{error}{hint}"))
     })?;
     for warning in &reading.warnings {
-        eprintln!("trueray: {}: warning: {warning}", path.display());
+        errln!("trueray: {}: warning: {warning}", path.display());
     }
     Ok(reading.picture)
 }

@@ -1,6 +1,7 @@
 //! `trueray devices`.
 
 use super::failure::{Failure, NO_DEVICE, OK, OUTPUT};
+use super::output::outln;
 use crate::gpu::{Error, list};
 
 /// Arguments of `trueray devices`.
@@ -22,18 +23,18 @@ fn print(args: &Args) -> Result<(), Failure> {
     let devices = list()?;
     if args.json {
         let json = serde_json::to_string_pretty(&devices).map_err(|e| Failure::new(OUTPUT, e.to_string()))?;
-        println!("{json}");
+        outln!("{json}");
     } else {
         const MIB: u64 = 1 << 20;
         for device in &devices {
-            println!("{}: {}", device.index, device.name);
-            println!("   type      {}", device.kind);
-            println!("   driver    {}", device.driver);
+            outln!("{}: {}", device.index, device.name);
+            outln!("   type      {}", device.kind);
+            outln!("   driver    {}", device.driver);
             if !device.pci.is_empty() {
-                println!("   PCI id    {}", device.pci);
+                outln!("   PCI id    {}", device.pci);
             }
-            println!("   f64       {}", if device.f64 { "yes" } else { "no" });
-            println!(
+            outln!("   f64       {}", if device.f64 { "yes" } else { "no" });
+            outln!(
                 "   limits    {} MiB a storage binding, {} MiB a buffer, {} workgroups a dispatch, {} invocations a workgroup",
                 device.max_storage_binding / MIB,
                 device.max_buffer / MIB,

@@ -1,5 +1,6 @@
 //! Exit codes and what they stand for: a documented contract.
 
+use super::output::errln;
 use std::fmt;
 
 use crate::film::OutputError;
@@ -39,7 +40,7 @@ impl Failure {
     /// Tells the user and returns the exit code.
     pub(super) fn report(&self) -> u8 {
         if !self.message.is_empty() {
-            eprintln!("trueray: {self}");
+            errln!("trueray: {self}");
         }
         self.code
     }

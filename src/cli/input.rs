@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use super::failure::{Failure, SCENE};
+use super::output::err;
 use crate::engine::unsupported;
 use crate::scene::{Parsed, Scene, parse};
 
@@ -64,7 +65,7 @@ impl Input {
     /// Prints the parser's report to standard error; warnings only unless `quiet`.
     pub(super) fn print_diagnostics(&self, quiet: bool) {
         if self.parsed.errors > 0 || !quiet {
-            eprint!("{}", self.parsed.report(std::io::stderr().is_terminal()));
+            err!("{}", self.parsed.report(std::io::stderr().is_terminal()));
         }
     }
 }

@@ -6,6 +6,7 @@ mod devices;
 mod failure;
 mod input;
 mod options;
+mod output;
 mod progress;
 mod render;
 mod stats;

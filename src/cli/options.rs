@@ -1,5 +1,6 @@
 //! Options that several subcommands share.
 
+use super::output::errln;
 use clap::{Args, ValueEnum};
 
 use crate::effects::{Effects, Request};
@@ -105,7 +106,7 @@ impl DeviceOptions {
             Choice::Cpu => Ok(None),
             Choice::Auto => match Gpu::open(&Choice::Auto) {
                 Err(Error::NoDevice(_)) if crate::gpu::list().is_ok_and(|list| list.is_empty()) => {
-                    eprintln!("trueray: no Vulkan device was found, rendering on the CPU reference");
+                    errln!("trueray: no Vulkan device was found, rendering on the CPU reference");
                     Ok(None)
                 }
                 result => result.map(Some),

@@ -1,5 +1,6 @@
 //! Progress on standard error.
 
+use super::output::errln;
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
@@ -58,9 +59,9 @@ impl Progress {
                 self.last_line = Instant::now();
                 let (name, rows) = (&self.name, self.rows);
                 if self.style == Style::Json {
-                    eprintln!("{}", serde_json::json!({ "scene": name, "rows_done": done, "rows": rows }));
+                    errln!("{}", serde_json::json!({ "scene": name, "rows_done": done, "rows": rows }));
                 } else {
-                    eprintln!("{name}: {done} of {rows} rows");
+                    errln!("{name}: {done} of {rows} rows");
                 }
             }
             _ => {}

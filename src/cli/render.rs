@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use super::failure::{Failure, OK, OUTPUT, USAGE};
 use super::input::Loaded;
 use super::options::{DeviceOptions, PictureOptions, device_name};
+use super::output::{err, errln};
 use super::progress::{Progress, Style};
 use super::stats::Stats;
 use crate::effects::Effects;
@@ -108,7 +109,7 @@ fn render_one(args: &Args, mut loaded: Loaded, gpu: Option<&Gpu>, open_time: Dur
     let effects = args.picture.effects(scene, &settings);
     let selection = args.device.selection(gpu, scene, &effects);
     if args.explain || args.verbose {
-        eprint!("{}{}", explanation(&loaded.name, &effects), precision_explanation(&selection));
+        err!("{}{}", explanation(&loaded.name, &effects), precision_explanation(&selection));
     }
     let backend = gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, selection.tier));
 
@@ -133,7 +134,7 @@ fn render_one(args: &Args, mut loaded: Loaded, gpu: Option<&Gpu>, open_time: Dur
     write_time += finishing.elapsed();
 
     if not_finite > 0 {
-        eprintln!("trueray: {}: {not_finite} pixels are not finite (NaN or infinity)", loaded.name);
+        errln!("trueray: {}: {not_finite} pixels are not finite (NaN or infinity)", loaded.name);
     }
     let stats = Stats {
         scene: loaded.name.clone(),
@@ -157,10 +158,10 @@ fn render_one(args: &Args, mut loaded: Loaded, gpu: Option<&Gpu>, open_time: Dur
     };
     if !args.quiet {
         let Stats { width, height, output, device, total_ms, .. } = &stats;
-        eprintln!("{output}: {width} × {height} on {device} in {total_ms:.0} ms");
+        errln!("{output}: {width} × {height} on {device} in {total_ms:.0} ms");
     }
     if args.stats || args.verbose {
-        eprint!("{}", stats.table());
+        err!("{}", stats.table());
     }
     Ok(stats)
 }

@@ -6,6 +6,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::failure::{BROKEN, Failure, OK, OUTPUT, USAGE};
+use super::output::{out, outln};
 use crate::gpu::{Choice, Gpu, Kernel};
 use crate::precision::Tier;
 use crate::stress::{Class, Row, classes, cost, run as run_classes, table};
@@ -99,7 +100,7 @@ fn stress(args: &Args) -> Result<u8, Failure> {
     let classes = selected_classes(&args.class)?;
     if args.list {
         for class in &classes {
-            println!("{:>2} {:<15} {} ({})", class.id, class.name, class.about, class.counted);
+            outln!("{:>2} {:<15} {} ({})", class.id, class.name, class.about, class.counted);
         }
         return Ok(OK);
     }
@@ -121,22 +122,22 @@ fn stress(args: &Args) -> Result<u8, Failure> {
     }
     let start = Instant::now();
     if !args.json {
-        println!("{}, {} rays a case, seed {}", gpu.info, args.count, args.seed);
-        print!("{}", table(&[]));
+        outln!("{}, {} rays a case, seed {}", gpu.info, args.count, args.seed);
+        out!("{}", table(&[]));
     }
     let rows = run_classes(&gpu, &kernels, &classes, args.count as usize, args.seed, |row| {
         if !args.json {
             // Without the head.
-            table(std::slice::from_ref(row)).lines().skip(1).for_each(|line| println!("{line}"));
+            table(std::slice::from_ref(row)).lines().skip(1).for_each(|line| outln!("{line}"));
         }
     })?;
     let broken = rows.iter().filter(|row| row.is_broken()).count();
     let seconds = start.elapsed().as_secs_f64();
     if args.json {
         let report = Report { device: gpu.info.to_string(), count: args.count, seed: args.seed, seconds, broken, rows };
-        println!("{}", serde_json::to_string_pretty(&report).map_err(|e| Failure::new(OUTPUT, e.to_string()))?);
+        outln!("{}", serde_json::to_string_pretty(&report).map_err(|e| Failure::new(OUTPUT, e.to_string()))?);
     } else {
-        println!("{} promises broken, {seconds:.1} s", if broken == 0 { "no".to_owned() } else { broken.to_string() });
+        outln!("{} promises broken, {seconds:.1} s", if broken == 0 { "no".to_owned() } else { broken.to_string() });
     }
     Ok(if broken == 0 { OK } else { BROKEN })
 }
@@ -145,14 +146,14 @@ fn stress(args: &Args) -> Result<u8, Failure> {
 fn time(args: &Args, gpu: &Gpu, kernels: &[Kernel], runs: usize) -> Result<u8, Failure> {
     let costs = cost(gpu, kernels, args.count as usize, args.seed, runs)?;
     if args.json {
-        println!("{}", serde_json::to_string_pretty(&costs).map_err(|e| Failure::new(OUTPUT, e.to_string()))?);
+        outln!("{}", serde_json::to_string_pretty(&costs).map_err(|e| Failure::new(OUTPUT, e.to_string()))?);
         return Ok(OK);
     }
-    println!("{}, {} rays against 32 spheres, {runs} runs in turn", gpu.info, args.count);
-    println!("{:<10} {:>10} {:>16} {:>13}", "kernel", "ns a test", "min … max", "× schoolbook");
+    outln!("{}, {} rays against 32 spheres, {runs} runs in turn", gpu.info, args.count);
+    outln!("{:<10} {:>10} {:>16} {:>13}", "kernel", "ns a test", "min … max", "× schoolbook");
     for cost in &costs {
         let range = format!("{:.2} … {:.2}", cost.ns.min(), cost.ns.max());
-        println!("{:<10} {:>10.2} {range:>16} {:>13.2}", cost.kernel, cost.ns.median(), cost.ratio);
+        outln!("{:<10} {:>10.2} {range:>16} {:>13.2}", cost.kernel, cost.ns.median(), cost.ratio);
     }
     Ok(OK)
 }

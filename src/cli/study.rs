@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use super::failure::{Failure, OK, OUTPUT};
 use super::input::Loaded;
 use super::options::{DeviceOptions, PictureOptions, samples_side};
+use super::output::out;
 use crate::film::Target;
 use crate::settings::Settings;
 use crate::study::{Error, Plan, Study, Subject, csv, html};
@@ -86,7 +87,7 @@ fn study(args: &Args) -> Result<(), Failure> {
         };
         let study = crate::study::study(&subject, &plan)?;
         if table_on_stdout {
-            print!("{}{}", if studies.is_empty() { "" } else { "\n" }, study.report());
+            out!("{}{}", if studies.is_empty() { "" } else { "\n" }, study.report());
         }
         studies.push(study);
     }

@@ -161,7 +161,8 @@ pub fn classes() -> Vec<Class> {
             "wrong, p99.9",
             vec![
                 rays("disc 1:1:1e-3", rays::disc, thin()),
-                rays("needle 1e-2:1:100", rays::needle_eye, thin()),
+                // Seen from 5e4 least semi-axes, beyond what `fast` covers (precision.rs): some 2 to 7 ppm are wrong.
+                rays("needle 1e-2:1:100", rays::needle_eye, [flag(), exact(2.5), exact(0.7)]),
                 rays("needle, any origin", rays::needle, [flag(), exact(2.5), exact(0.7)]),
                 rays("1:1:1e-4 from 2e-4", rays::disc_from_near, thin()),
             ],

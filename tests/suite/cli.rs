@@ -303,6 +303,24 @@ fn pictures_are_the_same_bytes_every_time() {
     }
 }
 
+#[test]
+fn stress_lists_judges_and_fails_where_a_promise_is_broken() {
+    let place = Place::new(SCENE);
+    let list = place.run("stress --list");
+    assert_exit(&list, 0, "");
+    assert!(String::from_utf8(list.stdout).unwrap().contains("terminator"));
+    assert_exit(&place.run("stress --class no-such-class"), 2, "");
+    assert_exit(&place.run("stress --precision exact"), 2, "");
+    assert_exit(&place.run_without_driver("stress --count 100"), 4, "no Vulkan device was found");
+
+    let Some(_gpu) = gpu("stress_lists_judges_and_fails_where_a_promise_is_broken") else { return };
+    let output = place.run("stress --count 20000 --class far --precision fast --json");
+    assert_exit(&output, 0, "");
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(json["broken"], 0);
+    assert_exit(&place.run("stress --count 20000 --class far --precision schoolbook"), 1, "");
+}
+
 /// 400 million pixels pass through a bounded buffer.
 #[cfg(target_os = "linux")]
 #[test]
@@ -329,4 +347,17 @@ fn peak_memory(mut command: Command) -> i64 {
     }
     assert!(child.wait().unwrap().success());
     peak
+}
+
+/// A reader that has seen enough, as `head` has, is no reason to panic or to change the exit code.
+#[test]
+fn a_closed_pipe_is_no_panic() {
+    let place = Place::new(SCENE);
+    for arguments in ["check scene.txt", "--help", "stress --list", "compare --json scene.txt scene.txt"] {
+        let mut child = place.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert!(!String::from_utf8_lossy(&output.stderr).contains("panicked"), "{arguments}");
+        assert!(output.status.code().is_some_and(|code| code == 0 || code == 2), "{arguments}");
+    }
 }

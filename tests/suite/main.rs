@@ -4,6 +4,7 @@
 //! a failure. The official pictures are looked for in the folder that `TRUERAY_KEYS` names.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "the test harness shows it where a test fails")]
 #![allow(missing_docs, reason = "test names say what they test")]
 
 mod cli;

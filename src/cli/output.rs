@@ -1,0 +1,45 @@
+//! Text for people and programs: a reader that has seen enough is no error, and nothing here panics.
+
+use std::fmt::Arguments;
+use std::io::{self, ErrorKind, Write};
+
+use super::failure::OUTPUT;
+
+/// Prints to standard output. A closed pipe is ignored, so that exit codes keep their meaning; a full disk ends the program.
+pub(super) fn to_stdout(text: Arguments) {
+    let written = io::stdout().lock().write_fmt(text).and_then(|()| io::stdout().flush());
+    if let Err(error) = written
+        && error.kind() != ErrorKind::BrokenPipe
+    {
+        to_stderr(format_args!("trueray: cannot write standard output: {error}\n"));
+        std::process::exit(i32::from(OUTPUT));
+    }
+}
+
+/// Prints to standard error, as far as anybody listens.
+pub(super) fn to_stderr(text: Arguments) {
+    // There is nowhere left to report a failure to.
+    let _ = io::stderr().lock().write_fmt(text);
+}
+
+/// `print!` that does not panic.
+macro_rules! out {
+    ($($text:tt)*) => { $crate::cli::output::to_stdout(format_args!($($text)*)) };
+}
+
+/// `println!` that does not panic.
+macro_rules! outln {
+    ($($text:tt)*) => { $crate::cli::output::to_stdout(format_args!("{}\n", format_args!($($text)*))) };
+}
+
+/// `eprint!` that does not panic.
+macro_rules! err {
+    ($($text:tt)*) => { $crate::cli::output::to_stderr(format_args!($($text)*)) };
+}
+
+/// `eprintln!` that does not panic.
+macro_rules! errln {
+    ($($text:tt)*) => { $crate::cli::output::to_stderr(format_args!("{}\n", format_args!($($text)*))) };
+}
+
+pub(super) use {err, errln, out, outln};
