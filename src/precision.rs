@@ -17,7 +17,7 @@ pub enum Tier {
     Fast,
     /// `f32` with error-free transforms where rounding would decide.
     Robust,
-    /// `f64`.
+    /// `f64`, or pairs of `f32` up to the roots where the device has none.
     Double,
 }
 

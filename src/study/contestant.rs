@@ -52,12 +52,13 @@ impl Contestant {
     }
 
     /// Judges its pictures.
-    pub(super) fn judge(self) -> Judge {
-        Judge::of(match self {
-            Self::Device(tier) => tier,
-            Self::CpuSingle => Tier::Fast,
-            Self::CpuDouble => Tier::Double,
-        })
+    pub(super) fn judge(self, gpu: Option<&Gpu>) -> Judge {
+        match (self, gpu) {
+            (Self::Device(tier), Some(gpu)) => Backend::Device(gpu, tier).judge(),
+            (Self::Device(tier), None) => Judge::of(tier),
+            (Self::CpuSingle, _) => Judge::of(Tier::Fast),
+            (Self::CpuDouble, _) => Backend::Reference.judge(),
+        }
     }
 }
 

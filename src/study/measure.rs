@@ -287,7 +287,7 @@ fn warm_up<'a>(
     };
     let (error, from_truth) = (distance(exact), truth.map(distance));
     let picture = Picture::new(scene.width, scene.height, runner.rgb.clone())?;
-    let explanation = Explanation::of(&picture, &exact.picture, &exact.reference, &contestant.judge());
+    let explanation = Explanation::of(&picture, &exact.picture, &exact.reference, &contestant.judge(gpu));
     let point = Point {
         contestant,
         depth: settings.max_depth,

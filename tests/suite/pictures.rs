@@ -36,12 +36,12 @@ fn short(file: &Path) -> String {
     file.file_stem().unwrap().to_string_lossy().into_owned()
 }
 
-fn assert_explained(case: &str, picture: &Picture, scene: &trueray::scene::Scene, settings: &Settings, tier: Tier) {
+fn assert_explained(case: &str, picture: &Picture, scene: &trueray::scene::Scene, settings: &Settings, judge: Judge) {
     let effects = Effects::of(scene, settings);
     let (expected, not_finite) = cpu_picture::<f64>(scene, settings, &effects);
     assert_eq!(not_finite, 0, "{case}: reference");
     let reference = Reference::new(scene, settings, &effects);
-    let explanation = Explanation::of(picture, &expected, &reference, &Judge::of(tier));
+    let explanation = Explanation::of(picture, &expected, &reference, &judge);
     assert_eq!(explanation.unexplained, 0, "{case}:\n{}", explanation.report());
 }
 
@@ -51,7 +51,7 @@ fn gpu_differs_from_the_reference_only_where_explained() {
     for_each_case(|case, scene, settings| {
         let (picture, not_finite) = gpu_picture(&gpu, Tier::Fast, scene, settings, &Effects::of(scene, settings));
         assert_eq!(not_finite, 0, "{case}");
-        assert_explained(case, &picture, scene, settings, Tier::Fast);
+        assert_explained(case, &picture, scene, settings, Judge::of(Tier::Fast));
     });
 }
 
@@ -61,7 +61,7 @@ fn single_precision_differs_from_the_reference_only_where_explained() {
     for_each_case(|case, scene, settings| {
         let (picture, not_finite) = cpu_picture::<f32>(scene, settings, &Effects::of(scene, settings));
         assert_eq!(not_finite, 0, "{case}");
-        assert_explained(case, &picture, scene, settings, Tier::Fast);
+        assert_explained(case, &picture, scene, settings, Judge::of(Tier::Fast));
     });
 }
 
@@ -192,7 +192,7 @@ fn robust_and_double_differ_from_the_reference_only_where_explained() {
                 let case = format!("{}, {name}, {tier}", short(&file));
                 let (picture, not_finite) = gpu_picture(&gpu, tier, &scene, settings, &effects);
                 assert_eq!(not_finite, 0, "{case}");
-                assert_explained(&case, &picture, &scene, settings, tier);
+                assert_explained(&case, &picture, &scene, settings, Backend::Device(&gpu, tier).judge());
                 assert!(picture == gpu_picture(&gpu, tier, &scene, settings, &all).0, "{case}: {}", effects.set);
             }
         }
@@ -210,7 +210,8 @@ fn auto_picks_a_tier_that_covers_the_scene() {
         let selection = Selection::of(&scene, &effects, precision::Request(None), gpu.ladder());
         if gpu.kernel(selection.tier).is_ok() {
             let (picture, _) = gpu_picture(&gpu, selection.tier, &scene, &settings, &effects);
-            assert_explained(&short(&file), &picture, &scene, &settings, selection.tier);
+            let judge = Backend::Device(&gpu, selection.tier).judge();
+            assert_explained(&short(&file), &picture, &scene, &settings, judge);
         }
     }
     let plain =
@@ -318,7 +319,7 @@ fn pictures_of_several_samples_differ_from_the_reference_only_where_explained() 
                 &picture,
                 &scene,
                 &settings,
-                Tier::Fast,
+                Judge::of(Tier::Fast),
             );
             if side == 2 {
                 let all = Effects::requested(&scene, &settings, &Request::Exactly(EffectSet::ALL));

@@ -65,8 +65,7 @@ fn measure(scene: &Scene, gpu: Option<&Gpu>, settings: &Settings) -> Study {
 fn a_study_has_every_point_and_its_errors_shrink() {
     let Some(gpu) = gpu("a_study_has_every_point_and_its_errors_shrink") else { return };
     let study = measure(&tiny(), Some(&gpu), &Settings::exact());
-    let expected: Vec<_> =
-        Contestant::ALL.into_iter().filter(|c| gpu.info.f64 || c.name() != "double").map(Contestant::name).collect();
+    let expected: Vec<_> = Contestant::ALL.into_iter().map(Contestant::name).collect();
     let names: Vec<_> = study.precision.points.iter().map(|point| point.contestant.name()).collect();
     assert_eq!(names, expected);
     assert_eq!(study.skipped.len(), Contestant::ALL.len() - expected.len());
