@@ -17,5 +17,6 @@ fn probe_transforms(@builtin(global_invocation_id) id: vec3<u32>) {
     let a = probe_reals[6u * id.x];
     let b = probe_reals[6u * id.x + 1u];
     probe_flags[id.x] = vec2<u32>(bitcast<u32>(two_sum(a, b).lo), bitcast<u32>(two_product(a, b).lo));
-    probe_values[id.x] = real(0.0);
+    // 0, from the parameters, which stay bound so even where no barrier reads them.
+    probe_values[id.x] = real(params.zero);
 }

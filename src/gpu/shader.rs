@@ -67,7 +67,8 @@ enum Storage {
 
 /// The scalar of the kernel and what the host packs.
 fn data_parts(kernel: Kernel, storage: Storage) -> Vec<Part> {
-    vec![
+    let barrier = if kernel == Kernel::NoBarrier { part!("barrier_none.wgsl") } else { part!("barrier.wgsl") };
+    let mut parts = vec![
         if kernel.is_double() { part!("real_f64.wgsl") } else { part!("real_f32.wgsl") },
         part!("types.wgsl"),
         match storage {
@@ -75,7 +76,11 @@ fn data_parts(kernel: Kernel, storage: Storage) -> Vec<Part> {
             Storage::Many => part!("many.wgsl"),
             Storage::Ranges => part!("ranges.wgsl"),
         },
-    ]
+    ];
+    if !kernel.is_double() {
+        parts.push(barrier);
+    }
+    parts
 }
 
 /// The parts that intersect rays with spheres, in order.
@@ -84,15 +89,12 @@ fn intersection_parts(kernel: Kernel, storage: Storage) -> Vec<Part> {
     parts.extend(data_parts(kernel, storage));
     let [real, pair] = [part!("distance_real.wgsl"), part!("distance_pair.wgsl")];
     let [single_roots, pair_roots] = [part!("roots_single.wgsl"), part!("roots_pair.wgsl")];
-    let [barrier, no_barrier] = [part!("barrier.wgsl"), part!("barrier_none.wgsl")];
     let (eft, robust) = (part!("eft.wgsl"), part!("kernel_robust.wgsl"));
     parts.extend(match kernel {
-        Kernel::Tier(Tier::Fast) => vec![barrier, real, part!("kernel_plain.wgsl")],
-        Kernel::Tier(Tier::Double) => vec![real, part!("kernel_plain.wgsl")],
-        Kernel::Tier(Tier::Robust) => vec![real, barrier, eft, single_roots, robust],
-        Kernel::Pairs => vec![barrier, eft, pair, pair_roots, robust],
-        Kernel::NoBarrier => vec![real, no_barrier, eft, single_roots, robust],
-        Kernel::Schoolbook => vec![barrier, real, part!("kernel_schoolbook.wgsl")],
+        Kernel::Tier(Tier::Fast | Tier::Double) => vec![real, part!("kernel_plain.wgsl")],
+        Kernel::Tier(Tier::Robust) | Kernel::NoBarrier => vec![real, eft, single_roots, robust],
+        Kernel::Pairs => vec![eft, pair, pair_roots, robust],
+        Kernel::Schoolbook => vec![real, part!("kernel_schoolbook.wgsl")],
     });
     parts.push(part!("intersect.wgsl"));
     parts
