@@ -8,7 +8,7 @@ use super::options::{DeviceOptions, PictureOptions, samples_side};
 use super::output::out;
 use crate::film::Target;
 use crate::settings::Settings;
-use crate::study::{Error, Plan, Study, Subject, csv, html};
+use crate::study::{Error, HardCases, Plan, Study, Subject, csv, html};
 
 /// Arguments of `trueray study`.
 #[derive(Debug, clap::Args)]
@@ -28,6 +28,13 @@ pub(super) struct Args {
     /// Samples per pixel to compare: square numbers
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "1,4,16", value_parser = samples_side)]
     spp_list: Vec<u32>,
+    /// Rays of each hard case, on which the intersection kernels are compared once, if a Vulkan device is used; 0 leaves
+    /// them out
+    #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = rays)]
+    hard_cases: usize,
+    /// Seed of the hard cases' random numbers
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    seed: u64,
     /// Write a report with plots, one HTML file that needs nothing else
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
@@ -91,18 +98,30 @@ fn study(args: &Args) -> Result<(), Failure> {
         }
         studies.push(study);
     }
-    write(args, &studies)
+    let hard_cases = match &gpu {
+        Some(gpu) if args.hard_cases > 0 => {
+            Some(crate::study::hard_cases(gpu, args.hard_cases, args.seed, args.runs as usize)?)
+        }
+        _ => None,
+    };
+    if let Some(cases) = hard_cases.as_ref().filter(|_| table_on_stdout) {
+        out!("\n{}", cases.report());
+    }
+    write(args, &studies, hard_cases.as_ref())
 }
 
-fn write(args: &Args, studies: &[Study]) -> Result<(), Failure> {
+fn write(args: &Args, studies: &[Study], hard_cases: Option<&HardCases>) -> Result<(), Failure> {
     if let Some(path) = &args.report {
-        save(path, &html(studies, &command()))?;
+        save(path, &html(studies, hard_cases, &command()))?;
     }
     if let Some(path) = &args.csv {
         save(path, &csv(studies))?;
     }
     if let Some(path) = &args.json {
-        let document = serde_json::json!({ "command": command(), "studies": studies });
+        let mut document = serde_json::json!({ "command": command(), "studies": studies });
+        if let Some(cases) = hard_cases {
+            document["hard_cases"] = serde_json::json!(cases);
+        }
         let text = serde_json::to_string_pretty(&document).map_err(|error| Failure::new(OUTPUT, error.to_string()))?;
         save(path, &(text + "\n"))?;
     }
@@ -142,6 +161,14 @@ fn seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(seconds) if seconds.is_finite() && seconds >= 0.0 => Ok(seconds),
         _ => Err("expected a number of seconds, 0 or more".into()),
+    }
+}
+
+/// Rays of each case, as many as `trueray stress` asks for, or none.
+fn rays(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(rays @ (0 | 64..=2_000_000)) => Ok(rays),
+        _ => Err("expected 0 or a number from 64 to 2000000".into()),
     }
 }
 

@@ -3,6 +3,7 @@
 mod contestant;
 mod effect_cost;
 mod error;
+mod hard_cases;
 mod measure;
 mod number;
 mod plots;
@@ -14,6 +15,7 @@ mod table;
 pub use contestant::Contestant;
 pub use effect_cost::{EffectCost, Variant, effect_cost};
 pub use error::{Distance, Error};
+pub use hard_cases::{HardCases, hard_cases};
 pub use measure::{Plan, Point, Series, Skipped, Study, Subject, Truth, study};
 pub use report::html;
 pub use sample::Sample;

@@ -3,14 +3,15 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::contestant::Contestant;
+use super::hard_cases::HardCases;
 use super::measure::{Point, Series, Study};
 use super::number::{ppm, short, time};
 use super::plots;
 use super::table::caution;
 use crate::settings::{Sampling, Settings};
 
-/// The page with all `studies`; `command` is what made them.
-pub fn html(studies: &[Study], command: &str) -> String {
+/// The page with all `studies` and the hard cases, where they were measured; `command` is what made them.
+pub fn html(studies: &[Study], hard_cases: Option<&HardCases>, command: &str) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -24,6 +25,7 @@ pub fn html(studies: &[Study], command: &str) -> String {
                 h1 { "What accuracy costs" }
                 p.sub { "Render time against error, measured by " code { (command) } }
                 @for study in studies { (section(study)) }
+                @if let Some(cases) = hard_cases { (cases.section()) }
                 h2 { "How this was measured" }
                 (method())
             }

@@ -7,7 +7,7 @@ use trueray::gpu::Gpu;
 use trueray::precision::{Request, Selection, Tier};
 use trueray::scene::Scene;
 use trueray::settings::Settings;
-use trueray::study::{COLUMNS, Contestant, Distance, Plan, Sample, Study, Subject, csv, html, study};
+use trueray::study::{COLUMNS, Contestant, Distance, Plan, Sample, Study, Subject, csv, hard_cases, html, study};
 
 use crate::support::{gpu, scene_of};
 
@@ -104,7 +104,25 @@ fn a_study_without_a_device_says_what_it_skips() {
     let skipped: Vec<_> = study.skipped.iter().map(|skipped| skipped.name.as_str()).collect();
     assert_eq!(skipped, ["fast", "robust", "double"]);
     assert!(study.report().contains("not measured: fast: no Vulkan device is used"));
-    assert!(html(&[study], "trueray").contains("no Vulkan device is used"));
+    assert!(html(&[study], None, "trueray").contains("no Vulkan device is used"));
+}
+
+#[test]
+fn hard_cases_have_a_panel_each_and_a_point_for_each_kernel() {
+    let Some(gpu) = gpu("hard_cases_have_a_panel_each_and_a_point_for_each_kernel") else { return };
+    let cases = hard_cases(&gpu, 64, 1, 1).unwrap();
+    let kernels = cases.costs.len();
+    assert_eq!(kernels + cases.skipped.len(), 5);
+    let panels = cases.rows.iter().filter(|row| row.kernel == "schoolbook").count();
+    assert_eq!(cases.rows.len(), panels * kernels);
+    let page = html(&[], Some(&cases), "trueray");
+    assert_eq!(page.matches("<svg").count(), panels);
+    assert!(page.contains("Hard cases") && page.contains("7 thin, disc 1:1:1e-3"));
+    assert!(!page.contains("NaN") && !html(&[], None, "trueray").contains("Hard cases"));
+    let report = cases.report();
+    for cost in &cases.costs {
+        assert!(cost.ns.median() > 0.0 && report.contains(cost.kernel), "{report}");
+    }
 }
 
 /// Fields of one CSV record; no field of these tests has a line break.
@@ -143,14 +161,14 @@ fn files_are_complete_and_depend_on_the_measurements_only() {
         assert!(median >= 0.0);
     }
 
-    let page = html(&studies, "trueray study 'a <b>'");
+    let page = html(&studies, None, "trueray study 'a <b>'");
     assert_eq!(page.matches("<svg").count(), 6 * studies.len());
     assert_eq!(page.matches("<svg").count(), page.matches("</svg>").count());
     assert!(page.contains("tiny, &lt;scene&gt;") && page.contains("a &lt;b&gt;"));
     for foreign in ["http:", "https:", "//", "src=", "href=", "url(", "@import", "<script", "NaN", "inf"] {
         assert!(!page.contains(foreign), "{foreign}");
     }
-    assert_eq!(page, html(&studies.clone(), "trueray study 'a <b>'"));
+    assert_eq!(page, html(&studies.clone(), None, "trueray study 'a <b>'"));
     assert_eq!(table, csv(&studies.clone()));
 }
 
@@ -181,12 +199,26 @@ fn the_program_writes_its_files_and_says_what_is_wrong() {
     assert!(std::fs::read_to_string(folder.join("r.csv")).unwrap().lines().count() > 10);
     assert_eq!(std::fs::read_dir(folder).unwrap().count(), 4, "no temporary file is left");
 
+    assert!(json.get("hard_cases").is_none(), "the CPU has none of the kernels");
+
     // With a `-` standard output has that file and nothing else.
     let output = run(&format!("{fast} --json -"), folder);
     serde_json::from_slice::<serde_json::Value>(&output.stdout).unwrap();
 
+    if gpu("the_program_writes_its_files_and_says_what_is_wrong").is_some() {
+        let on_device = "study scene.txt --device gpu --runs 1 --spp-list 1 --depths 0 --json - --report r.html";
+        for (count, panels) in [(64, true), (0, false)] {
+            let output = run(&format!("{on_device} --hard-cases {count}"), folder);
+            let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+            assert_eq!(json["hard_cases"]["rays"] == 64, panels);
+            let page = std::fs::read_to_string(folder.join("r.html")).unwrap();
+            assert_eq!(page.contains("<h2>Hard cases</h2>"), panels);
+        }
+    }
+
     for (arguments, code, message) in [
         ("study", 2, "SCENE"),
+        ("study scene.txt --hard-cases 9", 2, "--hard-cases"),
         ("study scene.txt --spp-list 1,3", 2, "square number"),
         ("study scene.txt --runs 0", 2, "--runs"),
         ("render scene.txt --spp 2", 2, "square number"),
