@@ -4,8 +4,11 @@ set -eu
 cd "$(dirname "$0")/.."
 
 has_driver() {
-    [ -n "${VK_DRIVER_FILES:-}" ] || ls /usr/share/vulkan/icd.d/*.json /usr/local/share/vulkan/icd.d/*.json \
-        /etc/vulkan/icd.d/*.json >/dev/null 2>&1
+    [ -n "${VK_DRIVER_FILES:-}${VK_ICD_FILENAMES:-}" ] && return
+    for file in /usr/share/vulkan/icd.d/*.json /usr/local/share/vulkan/icd.d/*.json /etc/vulkan/icd.d/*.json; do
+        [ -e "$file" ] && return
+    done
+    return 1
 }
 
 as_root() {
