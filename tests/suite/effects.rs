@@ -1,9 +1,10 @@
 //! What a scene calls for, and why.
 
+use proptest::prelude::*;
 use trueray::effects::{Effect, EffectSet, Effects, Request};
 use trueray::settings::Settings;
 
-use crate::support::scene_of;
+use crate::support::{cpu_picture, scene_of};
 
 /// A plain sphere line: name, centre, radius, and Ka Kd Ks Kr n.
 fn sphere(name: &str, center: [f64; 3], radius: f64, coefficients: &str) -> String {
@@ -119,4 +120,39 @@ fn a_forced_effect_says_so() {
     assert!(!row.on && row.reason.starts_with("forced off; the scene: "), "{row:?}");
     let all = Effects::requested(&scene, &settings, &Request::Exactly(EffectSet::ALL));
     assert_eq!((all.set, all.depth), (EffectSet::ALL, settings.max_depth));
+}
+
+/// Centres around and beyond the image plane, radii that touch, cut and swallow each other.
+fn any_sphere() -> impl Strategy<Value = String> {
+    let coefficient = || prop_oneof![Just(0.0), Just(0.5)];
+    let axis = || prop_oneof![Just(1.0), Just(0.5), 0.1..2.5];
+    let axes = prop_oneof![axis().prop_map(|s| [s; 3]), [axis(), axis(), axis()]];
+    let coefficients = [coefficient(), coefficient(), coefficient(), coefficient()];
+    ([-3.0..3.0, -3.0..3.0, -9.0..-0.5], axes, coefficients).prop_map(|([x, y, z], [a, b, c], [ka, kd, ks, kr])| {
+        format!("SPHERE s {x} {y} {z} {a} {b} {c} 0.9 0.6 0.3 {ka} {kd} {ks} {kr} 20\n")
+    })
+}
+
+fn any_light() -> impl Strategy<Value = String> {
+    [-6.0..6.0, -6.0..6.0, -12.0..6.0].prop_map(|[x, y, z]: [f64; 3]| format!("LIGHT l {x} {y} {z} 0.7 0.6 0.5\n"))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(600))]
+
+    /// What the rules leave out would have changed nothing, whatever the scene.
+    #[test]
+    fn what_is_left_out_changes_no_pixel(
+        spheres in prop::collection::vec(any_sphere(), 1..4),
+        lights in prop::collection::vec(any_light(), 0..3),
+        exact in any::<bool>(),
+    ) {
+        let mut scene = scene_of(&(spheres.concat() + &lights.concat() + "AMBIENT 0.2 0.3 0.4\nBACK 0.1 0.2 0.3"));
+        (scene.width, scene.height) = (32, 24);
+        let settings = if exact { Settings::exact() } else { Settings::classic() };
+        let all = Effects::requested(&scene, &settings, &Request::Exactly(EffectSet::ALL));
+        let auto = Effects::of(&scene, &settings);
+        let [with, without] = [&all, &auto].map(|effects| cpu_picture::<f64>(&scene, &settings, effects));
+        prop_assert!(with == without, "{}, depth {}", auto.set, auto.depth);
+    }
 }
