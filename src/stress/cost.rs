@@ -27,20 +27,21 @@ pub fn cost(gpu: &Gpu, kernels: &[Kernel], count: usize, seed: u64, runs: usize)
         match Prober::new(gpu, *kernel) {
             Ok(mut prober) => {
                 prober.ask(Question::Nearest, &batch)?;
-                probers.push((prober, Sample::default()));
+                probers.push((kernel.name(), prober, Sample::default()));
             }
             Err(Error::NoDevice(_)) => {}
             Err(error) => return Err(error),
         }
     }
     for _ in 0..runs {
-        for (prober, sample) in &mut probers {
+        for (_, prober, sample) in &mut probers {
             let before = prober.busy();
             prober.ask(Question::Nearest, &batch)?;
             sample.push(prober.busy().saturating_sub(before).as_secs_f64() * 1e9 / tests);
         }
     }
-    let base = probers.first().map_or(f64::NAN, |(_, sample)| sample.median());
-    let cost = |(prober, ns): (Prober, Sample)| Cost { kernel: prober.kernel().name(), ratio: ns.median() / base, ns };
+    let base = probers.first().map_or(f64::NAN, |(.., sample)| sample.median());
+    // By the name asked for: without f64 another kernel stands in for `double`.
+    let cost = |(kernel, _, ns): (&'static str, Prober, Sample)| Cost { kernel, ratio: ns.median() / base, ns };
     Ok(probers.into_iter().map(cost).collect())
 }
