@@ -1,36 +1,6 @@
 // Ray against sphere by the schoolbook: the discriminant as B^2 - A C, the roots as (-B -+ root)/A. The baseline of studies and
 // of `trueray stress`; no picture is made with it. The same functions as kernel_plain.wgsl.
 
-// A place in the world.
-alias Point = vec3r;
-
-// origin + t direction; the direction need not be normalised.
-struct Ray {
-    origin: Point,
-    direction: vec3r,
-    // direction . direction, and one over it.
-    a: real,
-    inv_a: real,
-}
-
-fn ray_from(origin: Point, direction: vec3r) -> Ray {
-    let a = dot(direction, direction);
-    return Ray(origin, direction, a, real(1.0) / a);
-}
-
-fn primary_ray(pixel: vec2<u32>) -> Ray {
-    return ray_from(vec3r(), vec3r(columns[pixel.x], rows[pixel.y], -params.near));
-}
-
-// From a point to a light, which lies at t = 1.
-fn ray_to_light(origin: Point, light: u32) -> Ray {
-    return ray_from(origin, lights[light].position - origin);
-}
-
-fn direction_of(ray: Ray) -> vec3r {
-    return ray.direction;
-}
-
 // The quadratic in the sphere's object space.
 struct Approach {
     origin: vec3r,
@@ -75,12 +45,4 @@ fn root_between(ray: Ray, sphere: u32, t_min: real) -> bool {
 fn local_hit(ray: Ray, hit: Hit) -> vec3r {
     let at = approach(ray, hit.sphere);
     return at.origin + at.direction * hit.t;
-}
-
-// The place of a point of the sphere's surface, given in object space.
-fn place_of(sphere: u32, local: vec3r) -> Point {
-    if ELLIPSOIDS {
-        return shapes[sphere].center + local * materials[sphere].scale;
-    }
-    return shapes[sphere].center + local;
 }

@@ -89,12 +89,13 @@ fn intersection_parts(kernel: Kernel, storage: Storage) -> Vec<Part> {
     parts.extend(data_parts(kernel, storage));
     let [real, pair] = [part!("distance_real.wgsl"), part!("distance_pair.wgsl")];
     let [single_roots, pair_roots] = [part!("roots_single.wgsl"), part!("roots_pair.wgsl")];
+    let plain_ray = part!("ray_plain.wgsl");
     let (eft, robust) = (part!("eft.wgsl"), part!("kernel_robust.wgsl"));
     parts.extend(match kernel {
-        Kernel::Tier(Tier::Fast | Tier::Double) => vec![real, part!("kernel_plain.wgsl")],
+        Kernel::Tier(Tier::Fast | Tier::Double) => vec![real, plain_ray, part!("kernel_plain.wgsl")],
         Kernel::Tier(Tier::Robust) | Kernel::NoBarrier => vec![real, eft, single_roots, robust],
         Kernel::Pairs => vec![eft, pair, pair_roots, robust],
-        Kernel::Schoolbook => vec![real, part!("kernel_schoolbook.wgsl")],
+        Kernel::Schoolbook => vec![real, plain_ray, part!("kernel_schoolbook.wgsl")],
     });
     parts.push(part!("intersect.wgsl"));
     parts
