@@ -25,13 +25,18 @@ pub struct Ellipsoid {
 }
 
 impl Ellipsoid {
-    /// Prepares `sphere`; a negative scale means its absolute value.
+    /// Prepares `sphere`.
     pub fn new(sphere: &Sphere) -> Self {
-        let s = sphere.scale.abs();
+        Self::with_axes(sphere.center, sphere.scale)
+    }
+
+    /// Prepares the ellipsoid around `center` with semi-axes `scale`; a negative one means its absolute value.
+    pub fn with_axes(center: DVec3, scale: DVec3) -> Self {
+        let s = scale.abs();
         let largest = s.max_element();
         let k = reciprocal_power_of_two(largest);
         Self {
-            center: sphere.center,
+            center,
             inv_scale: DVec3::new(largest / s.x, largest / s.y, largest / s.z) * k,
             scale: s / largest / k,
             radius: largest * k,

@@ -1,4 +1,4 @@
-//! Rays against spheres; read it beside `shaders/intersect.wgsl`.
+//! Rays against spheres; read it beside `shaders/intersect.wgsl` and `shaders/kernel_plain.wgsl`.
 //!
 //! The quadratic |c'|²τ² + 2(S'·c')τ + |S'|² − r² = 0 in its numerically sound form: the discriminant from the distance
 //! of the ray to the centre, the roots as a stable pair (Haines, Günther, Akenine-Möller, "Precision Improvements for

@@ -10,7 +10,7 @@ use crate::geometry::Ellipsoid;
 use crate::gpu::layout::ShapeValues;
 use crate::gpu::{Batch, Error, Kernel, ProbeRay, Prober, Question, RawBatch};
 use crate::precision::Tier;
-use crate::scene::{Sphere, parse};
+use crate::scene::parse;
 
 /// Class 13: a scale of zero is an error that names its line.
 pub(super) fn zero_scale() -> Metrics {
@@ -35,22 +35,11 @@ pub(super) fn negative_scale(prober: &mut Prober, random: &mut Random, count: us
     let mut mirrored = batch.clone();
     let mut differing = 0;
     for surface in &mut mirrored.surfaces {
-        let sphere = |scale| Sphere {
-            center: surface.center,
-            scale,
-            color: DVec3::ZERO,
-            ka: 0.0,
-            kd: 0.0,
-            ks: 0.0,
-            kr: 0.0,
-            n: 0.0,
-            kt: 0.0,
-            eta: 1.0,
-        };
+        let bits = |scale| Ellipsoid::with_axes(surface.center, scale).bits();
         let signs = random.bits();
         let sign = |bit: u32| if signs >> bit & 1 == 0 { 1.0 } else { -1.0 };
         let scale = surface.scale * DVec3::new(sign(0), sign(1), sign(2));
-        differing += u64::from(Ellipsoid::new(&sphere(scale)).bits() != Ellipsoid::new(&sphere(surface.scale)).bits());
+        differing += u64::from(bits(scale) != bits(surface.scale));
         surface.scale = scale;
     }
     let answers = prober.ask(Question::Nearest, &batch)?;

@@ -11,7 +11,6 @@ use crate::camera::NEAR_T_MIN;
 use crate::cpu::oracle;
 use crate::geometry::Ellipsoid;
 use crate::gpu::{Answer, Batch, ProbeRay, Surface};
-use crate::scene::Sphere;
 
 /// The nearest number that two `f32` carry exactly.
 pub fn carried(v: DVec3) -> DVec3 {
@@ -47,19 +46,7 @@ impl Given {
         if self == Self::Whole {
             return *surface;
         }
-        let sphere = Sphere {
-            center: surface.center,
-            scale: surface.scale,
-            color: DVec3::ZERO,
-            ka: 0.0,
-            kd: 0.0,
-            ks: 0.0,
-            kr: 0.0,
-            n: 0.0,
-            kt: 0.0,
-            eta: 1.0,
-        };
-        let Ellipsoid { center, inv_scale, radius, .. } = Ellipsoid::new(&sphere);
+        let Ellipsoid { center, inv_scale, radius, .. } = Ellipsoid::with_axes(surface.center, surface.scale);
         Surface { center: single(center), scale: f64::from(radius as f32) / single(inv_scale) }
     }
 
