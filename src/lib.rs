@@ -5,6 +5,7 @@
 //! dispatch → rows of pixels → file. `cpu` and `gpu` never see each other; both read [`scene`], [`effects`], [`camera`]
 //! and [`geometry`].
 
+pub mod accel;
 pub mod camera;
 pub mod cli;
 pub mod compare;

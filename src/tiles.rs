@@ -18,11 +18,11 @@ pub struct Cover {
 
 /// Where one sphere can be on the picture.
 #[derive(Debug, Clone)]
-struct Bounds {
+pub(crate) struct Bounds {
     /// First and last column.
-    columns: [u32; 2],
+    pub(crate) columns: [u32; 2],
     /// First and last row.
-    rows: [u32; 2],
+    pub(crate) rows: [u32; 2],
     /// Its outline, where the sphere is large enough for the corners of the rectangle to matter.
     outline: Option<Box<Outline>>,
 }
@@ -47,7 +47,7 @@ impl Cover {
                 continue;
             }
             for row in upper.max(first) / TILE..=lower.min(last) / TILE {
-                let [left, right] = bounds.columns_in(row, &self.camera);
+                let [left, right] = bounds.columns_in([row * TILE, (row + 1) * TILE], &self.camera);
                 let start = (row - top) as usize * across as usize;
                 covered[start + (left / TILE) as usize..=start + (right / TILE) as usize].fill(true);
             }
@@ -59,7 +59,7 @@ impl Cover {
 
 impl Bounds {
     /// Columns and rows that the part of the ellipsoid beyond the image plane can cover.
-    fn new(ellipsoid: &Ellipsoid, camera: &Camera) -> Option<Self> {
+    pub(crate) fn new(ellipsoid: &Ellipsoid, camera: &Camera) -> Option<Self> {
         let semi_axes = ellipsoid.scale * ellipsoid.radius;
         let DVec3 { x, y, z } = ellipsoid.center;
         let near = camera.near();
@@ -73,14 +73,14 @@ impl Bounds {
         Some(Self { columns, rows, outline })
     }
 
-    /// The columns that a row of tiles can see of it.
-    fn columns_in(&self, tile_row: u32, camera: &Camera) -> [u32; 2] {
+    /// The columns in which the rows from `first` up to `end` can see it.
+    pub(crate) fn columns_in(&self, [first, end]: [u32; 2], camera: &Camera) -> [u32; 2] {
         let Some(outline) = &self.outline else {
             return self.columns;
         };
         // The same margin as that of the rows.
         let margin = 1.0 + f64::from(camera.height()) / 32768.0;
-        let rows = [f64::from(tile_row * TILE) - margin, f64::from((tile_row + 1) * TILE) + margin];
+        let rows = [f64::from(first) - margin, f64::from(end) + margin];
         let slopes = outline.across(rows.map(|row| camera.y_at(row) / camera.near()));
         let columns = slopes.map(|slopes| slopes.map(|slope| camera.column_of(slope * camera.near())));
         match columns.and_then(|columns| pixel_range(columns, camera.width())) {

@@ -7,6 +7,7 @@
 use super::real::Real;
 use super::scene::{Shape, World};
 use super::vec3::Vec3;
+use crate::accel::REACH;
 
 /// origin + t·direction; the direction need not be normalised.
 #[derive(Debug, Clone, Copy)]
@@ -119,18 +120,40 @@ pub(crate) fn accepted_root<T: Real>(
     }
 }
 
-/// The nearest intersection in `range`; of equal ones the lowest index.
-pub(crate) fn nearest_hit<T: Real>(
+/// The nearest of `nearest` and the intersections with `spheres` in `range`; of equal ones the lowest index.
+fn nearest_of<T: Real>(
     world: &World<T>,
     ray: &Ray<T>,
     own: Option<&Own<T>>,
-    mut range: Range<T>,
+    range: &Range<T>,
+    spheres: &[u32],
+    mut nearest: Option<Hit<T>>,
 ) -> Option<Hit<T>> {
-    let mut nearest: Option<Hit<T>> = None;
-    for (sphere, shape) in world.shapes.iter().enumerate() {
-        if let Some((t, inside)) = accepted_root(ray, shape, own, &range) {
+    for &sphere in spheres {
+        let sphere = sphere as usize;
+        if let Some((t, inside)) = accepted_root(ray, &world.shapes[sphere], own, range)
+            && nearest.is_none_or(|nearest| t < nearest.t || (t == nearest.t && sphere < nearest.sphere))
+        {
             nearest = Some(Hit { t, sphere, inside });
-            range.t_max = t;
+        }
+    }
+    nearest
+}
+
+/// The nearest intersection of a primary ray, which can meet no other spheres than those `seen` from its pixel.
+pub(crate) fn nearest_seen<T: Real>(world: &World<T>, ray: &Ray<T>, seen: &[u32]) -> Option<Hit<T>> {
+    nearest_of(world, ray, None, &world.primary, seen, None)
+}
+
+/// The nearest intersection of a reflection ray.
+pub(crate) fn nearest_reflected<T: Real>(world: &World<T>, ray: &Ray<T>, own: Option<&Own<T>>) -> Option<Hit<T>> {
+    let grid = world.accel.grid.as_ref()?;
+    let range = &world.reflection;
+    let mut nearest = nearest_of(world, ray, own, range, grid.large(), None);
+    for step in grid.walk(ray.origin.to_f64(), ray.direction.to_f64()) {
+        nearest = nearest_of(world, ray, own, range, grid.lists.of(step.cell), nearest);
+        if nearest.is_some_and(|hit| step.ends_the_walk(hit.t.to_f64())) {
+            break;
         }
     }
     nearest
@@ -153,7 +176,24 @@ pub(crate) fn blocks<T: Real>(ray: &Ray<T>, shape: &Shape<T>, own: Option<&Own<T
     at.discriminant >= T::ZERO && (crosses || passes)
 }
 
-/// Whether any sphere stands between the ray's origin and t = 1.
-pub(crate) fn any_hit<T: Real>(world: &World<T>, ray: &Ray<T>, own: Option<&Own<T>>) -> bool {
-    world.shapes.iter().any(|shape| blocks(ray, shape, own, world.shadow_t_min))
+/// Whether any sphere stands between the ray's origin and the light with this index at t = 1.
+pub(crate) fn any_hit<T: Real>(world: &World<T>, ray: &Ray<T>, own: Option<&Own<T>>, light: usize) -> bool {
+    let from_light = (-ray.direction).to_f64();
+    let lights = &world.accel.lights;
+    let distance = from_light.length() + lights.slack;
+    lights
+        .at(light, from_light)
+        .iter()
+        .map(|&sphere| &world.shapes[sphere as usize])
+        .take_while(|shape| !is_behind(ray, shape, distance))
+        .any(|shape| blocks(ray, shape, own, world.shadow_t_min))
+}
+
+/// Whether a sphere, and so all that follow in a light's list, lies too far from the light, at t = 1, to stand before a point at this distance
+/// from it.
+fn is_behind<T: Real>(ray: &Ray<T>, shape: &Shape<T>, distance: f64) -> bool {
+    let from_light = (shape.center - ray.origin - ray.direction).to_f64();
+    let scale = shape.inv_scale.to_f64();
+    let reach = distance + shape.radius.to_f64() / scale.min_element() * REACH;
+    from_light.length_squared() > reach * reach
 }

@@ -83,7 +83,7 @@ impl Judge {
         let (mut errors, mut magnitudes, mut count) = (DVec3::ZERO, DVec3::ZERO, 0.0);
         for ray in reference.sample_rays(i, j) {
             let mut cone = Cone::new(self);
-            let color = trace(&reference.world, ray, &mut cone).to_f64();
+            let color = trace(&reference.world, ray, reference.seen(i, j), &mut cone).to_f64();
             errors += cone.color + color.abs() * (STEPS * self.shading);
             magnitudes += color.abs();
             count += 1.0;

@@ -3,6 +3,8 @@
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub};
 
+use crate::accel::Rounding;
+
 /// A real number type that the reference can be run in.
 pub trait Real:
     Copy
@@ -25,6 +27,9 @@ pub trait Real:
     /// A number beyond every accepted distance; greater ones and infinity are never a hit.
     const FAR: Self;
 
+    /// How the type rounds.
+    const ROUNDING: Rounding;
+
     /// The nearest value of this type.
     fn from_f64(x: f64) -> Self;
     /// The nearest `f64`.
@@ -40,11 +45,12 @@ pub trait Real:
 }
 
 macro_rules! impl_real {
-    ($t:ty) => {
+    ($t:ty, $rounding:expr) => {
         impl Real for $t {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
             const FAR: Self = 3e38;
+            const ROUNDING: Rounding = $rounding;
 
             fn from_f64(x: f64) -> Self {
                 x as $t
@@ -68,5 +74,5 @@ macro_rules! impl_real {
     };
 }
 
-impl_real!(f32);
-impl_real!(f64);
+impl_real!(f32, Rounding::SINGLE);
+impl_real!(f64, Rounding::DOUBLE);

@@ -27,9 +27,10 @@ impl<T: Real> Reference<T> {
     /// Prepares `scene` with `effects`, rounding its numbers once to `T`.
     pub fn new(scene: &Scene, settings: &Settings, effects: &Effects) -> Self {
         let (scene, settings) = in_range(scene, settings);
+        let camera = Camera::new(&scene, &settings);
         Self {
-            world: World::new(&scene, &settings, effects),
-            camera: Camera::new(&scene, &settings),
+            world: World::new(&scene, &settings, effects, &camera),
+            camera,
             quantize: settings.quantize,
         }
     }
@@ -48,7 +49,8 @@ impl<T: Real> Reference<T> {
     /// The colour of a pixel: the mean over its samples, row by row, unclamped; read it beside `shaders/main.wgsl`. Taken
     /// from differences to the first sample, it is exact where all are equal.
     fn pixel_color<W: Witness<T>>(&self, i: u32, j: u32, witness: &mut W) -> Vec3<T> {
-        let mut samples = self.sample_rays(i, j).map(|ray| trace(&self.world, ray, witness));
+        let seen = self.seen(i, j);
+        let mut samples = self.sample_rays(i, j).map(|ray| trace(&self.world, ray, seen, witness));
         let Some(first) = samples.next() else { return Vec3::ZERO };
         let mut excess = Vec3::ZERO;
         for color in samples {
@@ -60,6 +62,11 @@ impl<T: Real> Reference<T> {
         }
         let count = T::from_f64(f64::from(side * side));
         first + Vec3::new(excess.x / count, excess.y / count, excess.z / count)
+    }
+
+    /// The spheres that pixel (column `i`, row `j`) may see.
+    pub(super) fn seen(&self, i: u32, j: u32) -> &[u32] {
+        self.world.accel.screen.at(i, j)
     }
 
     /// The rays of all samples of pixel (column `i`, row `j`), row by row.

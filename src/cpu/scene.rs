@@ -3,7 +3,8 @@
 use super::intersect::Range;
 use super::real::Real;
 use super::vec3::Vec3;
-use crate::camera::NEAR_T_MIN;
+use crate::accel::Acceleration;
+use crate::camera::{Camera, NEAR_T_MIN};
 use crate::effects::{Effect, EffectSet, Effects};
 use crate::geometry::{Ellipsoid, ellipsoids, shape_indices};
 use crate::scene::{Light, Scene, Sphere};
@@ -68,10 +69,12 @@ pub(crate) struct World<T> {
     pub shadows: bool,
     pub specular: Specular,
     pub max_depth: u32,
+    /// Which spheres a ray can meet.
+    pub accel: Acceleration,
 }
 
 impl<T: Real> World<T> {
-    pub(crate) fn new(scene: &Scene, settings: &Settings, effects: &Effects) -> Self {
+    pub(crate) fn new(scene: &Scene, settings: &Settings, effects: &Effects, camera: &Camera) -> Self {
         let on = |effect| effects.set.has(effect);
         let ellipsoids = ellipsoids(scene, on(Effect::Ellipsoids));
         let indices = match settings.secondary {
@@ -98,6 +101,7 @@ impl<T: Real> World<T> {
             shadows: on(Effect::Shadows),
             specular: settings.specular,
             max_depth: effects.depth,
+            accel: Acceleration::new(scene, camera, effects.set, T::ROUNDING),
         }
     }
 }

@@ -70,7 +70,7 @@ pub(crate) fn light_terms<T: Real>(
 pub(crate) fn local_color<T: Real, W: Witness<T>>(world: &World<T>, surface: &Surface<T>, witness: &mut W) -> Vec3<T> {
     let material = &world.materials[surface.sphere];
     let mut color = world.ambient * material.color * material.ka;
-    for light in &world.lights {
+    for (index, light) in world.lights.iter().enumerate() {
         let shadow_ray = Ray { origin: surface.position, direction: light.position - surface.position };
         let distance_squared = shadow_ray.direction.dot(shadow_ray.direction);
         let to_light = shadow_ray.direction * (T::ONE / distance_squared.sqrt());
@@ -84,7 +84,7 @@ pub(crate) fn local_color<T: Real, W: Witness<T>>(world: &World<T>, surface: &Su
         let own = world.skip_self.then_some(&surface.own);
         if world.shadows {
             witness.shadow(world, &shadow_ray, own);
-            if any_hit(world, &shadow_ray, own) {
+            if any_hit(world, &shadow_ray, own, index) {
                 continue;
             }
         }

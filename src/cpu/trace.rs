@@ -1,6 +1,6 @@
 //! A pixel's colour: the primary ray and its chain of reflections; read it beside `shaders/trace.wgsl`.
 
-use super::intersect::{Ray, nearest_hit};
+use super::intersect::{Ray, nearest_reflected, nearest_seen};
 use super::real::Real;
 use super::scene::World;
 use super::shade::{Surface, local_color, surface_at};
@@ -10,10 +10,15 @@ use super::witness::Witness;
 /// Mirrors with Kr > 1 amplify no further, or products would overflow; whatever is lit at all is white long before.
 const MAX_THROUGHPUT: f64 = 1e30;
 
-/// The unclamped colour seen along `primary`.
-pub(crate) fn trace<T: Real, W: Witness<T>>(world: &World<T>, primary: Ray<T>, witness: &mut W) -> Vec3<T> {
+/// The unclamped colour seen along `primary`, which can meet no other spheres than those `seen`.
+pub(crate) fn trace<T: Real, W: Witness<T>>(
+    world: &World<T>,
+    primary: Ray<T>,
+    seen: &[u32],
+    witness: &mut W,
+) -> Vec3<T> {
     let mut ray = primary;
-    let mut hit = nearest_hit(world, &ray, None, world.primary);
+    let mut hit = nearest_seen(world, &ray, seen);
     witness.nearest(world, &ray, None, &world.primary, hit.as_ref());
     if hit.is_none() {
         return world.background;
@@ -38,7 +43,7 @@ pub(crate) fn trace<T: Real, W: Witness<T>>(world: &World<T>, primary: Ray<T>, w
         }
         ray = reflection_ray(&surface);
         let own = world.skip_self.then_some(&surface.own);
-        hit = nearest_hit(world, &ray, own, world.reflection);
+        hit = nearest_reflected(world, &ray, own);
         witness.reflected(throughput);
         witness.nearest(world, &ray, own, &world.reflection, hit.as_ref());
     }

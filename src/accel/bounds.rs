@@ -1,0 +1,88 @@
+//! What encloses a sphere for sure: all that its intersection test, rounding included, may take for a hit.
+
+use glam::DVec3;
+
+use crate::geometry::Ellipsoid;
+use crate::scene::{Scene, Sphere};
+
+/// How a renderer rounds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rounding {
+    /// Unit roundoff of the intersection tests.
+    pub tests: f64,
+    /// Unit roundoff of the way from a place or a direction to its cell.
+    pub lookups: f64,
+}
+
+impl Rounding {
+    /// `f32` throughout.
+    pub const SINGLE: Self = Self { tests: 6e-8, lookups: 6e-8 };
+    /// Error-free transforms of `f32` in the tests.
+    pub const COMPENSATED: Self = Self { tests: 1e-12, lookups: 6e-8 };
+    /// `f64` throughout.
+    pub const DOUBLE: Self = Self { tests: 1.2e-16, lookups: 1.2e-16 };
+}
+
+/// What is added to each radius, as a part of it. A ray that starts outside the larger sphere has roots good to a tenth of
+/// this even where they nearly cancel, so that a hit can be compared with the ends of cells.
+const MARGIN: f64 = 1e-3;
+
+/// Rounding errors of a position in a test, relative to the greatest coordinate: some ten operations on differences of two
+/// positions, each as large as 2 √3 such coordinates.
+const ERROR_STEPS: f64 = 32.0;
+
+/// Encloses the spheres of a scene.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Enclosure<'a> {
+    spheres: &'a [Sphere],
+    true_axes: bool,
+    /// Error of a position in object space, times the least semi-axis.
+    error: f64,
+    /// The greatest coordinate of anything in the scene.
+    pub(super) magnitude: f64,
+}
+
+impl<'a> Enclosure<'a> {
+    /// Of the spheres of `scene`, or of their bounding spheres without `true_axes`.
+    pub(super) fn new(scene: &'a Scene, true_axes: bool, rounding: Rounding) -> Self {
+        let extent = |v: DVec3| v.abs().max_element();
+        let spheres = scene.spheres.iter().map(|s| extent(s.center) + extent(s.scale));
+        let lights = scene.lights.iter().map(|light| extent(light.position));
+        let magnitude = spheres.chain(lights).fold(0.0, f64::max);
+        Self { spheres: &scene.spheres, true_axes, error: ERROR_STEPS * rounding.tests * magnitude, magnitude }
+    }
+
+    /// Number of spheres.
+    pub(super) fn len(&self) -> usize {
+        self.spheres.len()
+    }
+
+    /// More than the error of a sphere's distance from a point, in single precision.
+    pub(super) fn slack(&self) -> f64 {
+        let ratio = |s: &Sphere| s.scale.abs().max_element() / s.scale.abs().min_element();
+        let ratio = if self.true_axes { self.spheres.iter().map(ratio).fold(1.0, f64::max) } else { 1.0 };
+        ERROR_STEPS * Rounding::SINGLE.tests * self.magnitude * ratio
+    }
+
+    /// Centre and enlarged semi-axes.
+    pub(super) fn solid(&self, sphere: usize) -> Solid {
+        let Sphere { center, scale, .. } = self.spheres[sphere];
+        let scale = scale.abs();
+        let axes = if self.true_axes { scale } else { DVec3::splat(scale.max_element()) };
+        // The test errs alike along all axes of object space, where the ellipsoid is a sphere.
+        Solid { center, semi_axes: axes * (1.0 + MARGIN + self.error / axes.min_element()) }
+    }
+
+    /// The same as an ellipsoid prepared for intersection.
+    pub(super) fn ellipsoid(&self, sphere: usize) -> Ellipsoid {
+        let Solid { center, semi_axes } = self.solid(sphere);
+        Ellipsoid::with_axes(center, semi_axes)
+    }
+}
+
+/// An axis-aligned ellipsoid.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Solid {
+    pub(super) center: DVec3,
+    pub(super) semi_axes: DVec3,
+}

@@ -1,0 +1,61 @@
+//! Which spheres a ray can meet at all, so that its cost hardly grows with their number.
+//!
+//! Rays from the eye share their origin and those to a point light their end: short lists, one for each tile of the picture
+//! and one for each small cone of directions from a light, take the place of a tree. Only reflections walk a grid. Every
+//! list has whatever a test, rounding included, can take for a hit, so a picture is byte for byte that of all spheres.
+
+mod bounds;
+mod grid;
+mod light_buffer;
+mod lists;
+mod screen;
+
+pub use bounds::Rounding;
+pub use grid::Grid;
+pub use light_buffer::{Face, LightBuffer, REACH};
+pub use lists::Lists;
+pub use screen::ScreenLists;
+
+use crate::camera::Camera;
+use crate::effects::{Effect, EffectSet};
+use crate::scene::Scene;
+use bounds::Enclosure;
+use glam::DVec3;
+
+/// The lists of one scene.
+#[derive(Debug, Clone)]
+pub struct Acceleration {
+    /// For rays from the eye.
+    pub screen: ScreenLists,
+    /// For rays to lights; empty where nothing casts shadows.
+    pub lights: LightBuffer,
+    /// For reflections, where there are any.
+    pub grid: Option<Grid>,
+}
+
+impl Acceleration {
+    /// The lists that the effects of `scene` call for, for a renderer that rounds like this.
+    pub fn new(scene: &Scene, camera: &Camera, effects: EffectSet, rounding: Rounding) -> Self {
+        let enclosure = Enclosure::new(scene, effects.has(Effect::Ellipsoids), rounding);
+        let lights: Vec<DVec3> = scene.lights.iter().map(|light| light.position).collect();
+        let lit = effects.has(Effect::Shadows);
+        let entries = light_entries(scene.spheres.len() as u64, lights.len() as u64);
+        Self {
+            screen: ScreenLists::new(&enclosure, camera),
+            lights: LightBuffer::new(&enclosure, if lit { &lights } else { &[] }, entries, rounding),
+            grid: effects.has(Effect::Reflections).then(|| Grid::new(&enclosure, rounding, grid_density())),
+        }
+    }
+}
+
+fn env(name: &str, default: f64) -> f64 {
+    std::env::var(name).ok().and_then(|x| x.parse().ok()).unwrap_or(default)
+}
+
+fn light_entries(spheres: u64, _lights: u64) -> u64 {
+    (spheres as f64 * env("LE", 12.0)) as u64 + 256
+}
+
+fn grid_density() -> f64 {
+    env("GD", 1.0)
+}

@@ -1,0 +1,97 @@
+//! Lists for rays from the eye: which spheres each tile of the picture may see.
+
+use super::bounds::Enclosure;
+use super::lists::{Binning, Lists};
+use crate::camera::Camera;
+use crate::tiles::{Bounds, TILE};
+
+/// Entries that all lists together may have, beside some per sphere: more make the tiles larger.
+const MAX_ENTRIES: u64 = 1 << 22;
+
+/// Lists of spheres in ascending order of index, one for each tile of pixels.
+#[derive(Debug, Clone)]
+pub struct ScreenLists {
+    /// Tiles in reading order.
+    pub lists: Lists,
+    /// A tile's edge is [`TILE`] pixels times this power of two.
+    pub shift: u32,
+    /// Tiles in a row.
+    pub across: u32,
+}
+
+struct Tiles<'a> {
+    enclosure: &'a Enclosure<'a>,
+    camera: &'a Camera,
+    shift: u32,
+    across: u32,
+    down: u32,
+}
+
+impl ScreenLists {
+    /// Projects everything that `enclosure` has.
+    pub(super) fn new(enclosure: &Enclosure, camera: &Camera) -> Self {
+        let limit = MAX_ENTRIES.max(8 * enclosure.len() as u64);
+        let mut shift = 0;
+        loop {
+            let edge = TILE << shift;
+            let (across, down) = (camera.width().div_ceil(edge), camera.height().div_ceil(edge));
+            let tiles = Tiles { enclosure, camera, shift, across, down };
+            if across * down == 1 || u64::from(across) * u64::from(down) + tiles.rectangles(limit) <= limit {
+                return Self { lists: Lists::build(&tiles), shift, across };
+            }
+            shift += 1;
+        }
+    }
+
+    /// The index of the tile that pixel (column `i`, row `j`) lies in.
+    pub fn tile(&self, i: u32, j: u32) -> usize {
+        let edge = TILE << self.shift;
+        (j / edge) as usize * self.across as usize + (i / edge) as usize
+    }
+
+    /// The spheres that the pixel in column `i` and row `j` may see.
+    pub fn at(&self, i: u32, j: u32) -> &[u32] {
+        self.lists.of(self.tile(i, j))
+    }
+}
+
+impl Tiles<'_> {
+    fn bounds(&self, sphere: usize) -> Option<Bounds> {
+        Bounds::new(&self.enclosure.ellipsoid(sphere), self.camera)
+    }
+
+    /// How many tiles the rectangles around the spheres have, counted until beyond `limit`.
+    fn rectangles(&self, limit: u64) -> u64 {
+        let edge = TILE << self.shift;
+        let mut sum = 0;
+        for bounds in (0..self.len()).filter_map(|sphere| self.bounds(sphere)) {
+            let span = |[first, last]: [u32; 2]| u64::from(last / edge - first / edge + 1);
+            sum += span(bounds.rows) * span(bounds.columns);
+            if sum > limit {
+                break;
+            }
+        }
+        sum
+    }
+}
+
+impl Binning for Tiles<'_> {
+    fn len(&self) -> usize {
+        self.enclosure.len()
+    }
+
+    fn cells(&self) -> usize {
+        self.across as usize * self.down as usize
+    }
+
+    fn visit(&self, rank: usize, emit: &mut impl FnMut(usize)) {
+        let Some(bounds) = self.bounds(rank) else { return };
+        let edge = TILE << self.shift;
+        for row in bounds.rows[0] / edge..=bounds.rows[1] / edge {
+            let [left, right] = bounds.columns_in([row * edge, (row + 1) * edge], self.camera);
+            for column in left / edge..=right / edge {
+                emit(row as usize * self.across as usize + column as usize);
+            }
+        }
+    }
+}
