@@ -30,13 +30,22 @@ fn echo_layout() {
     echo(params.reflection_t_min);
     echo(params.quantize_bias);
     echo(params.near_low);
+    echo(params.light_slack);
+    echo3(vec3r(params.grid_low));
+    echo_bits(params.screen_shift);
+    echo3(vec3r(params.grid_per_unit));
+    echo_bits(params.screen_across);
+    for (var axis = 0u; axis < 3u; axis++) {
+        echo_bits(params.grid_cells[axis]);
+    }
+    echo_bits(params.grid_offsets);
     echo_bits(params.sphere_count);
     echo_bits(params.light_count);
     echo_bits(params.max_depth);
     echo_bits(params.zero);
     for (var i = 0u; i < params.sphere_count; i++) {
-        echo3(shapes[i].center);
-        echo(shapes[i].radius);
+        echo3(shapes[i].center_radius.xyz);
+        echo(shapes[i].center_radius.w);
         echo3(shapes[i].inv_scale);
         echo_bits(shapes[i].index);
         echo3(materials[i].color);

@@ -11,7 +11,7 @@ override SPHERE_COUNT: u32;
 override LIGHT_COUNT: u32;
 
 // Whether leaving a loop over the spheres early pays: not where it is unrolled.
-const MANY: bool = false;
+const LEAVES_EARLY: bool = false;
 
 fn first_sphere() -> u32 {
     return 0u;

@@ -1,4 +1,4 @@
-// The nearest hit and any hit, over the roots that the tier's kernel finds; read it beside src/cpu/intersect.rs.
+// What counts as a hit, over the roots that the tier's kernel finds; read it beside src/cpu/intersect.rs.
 
 // The sphere that a secondary ray leaves.
 struct Own {
@@ -69,18 +69,8 @@ fn accepted_root(ray: Ray, sphere: u32, own: Own, range: Range) -> Root {
     return Root(roots.exist && range.greater && is_within, roots.greater, true);
 }
 
-// The nearest intersection in the range; of equal ones the lowest index.
-fn nearest_hit(ray: Ray, own: Own, within: Range) -> Hit {
-    var range = within;
-    var nearest = Hit(false, distance_of(FAR), 0u, false);
-    for (var sphere = first_sphere(); sphere < sphere_count(); sphere++) {
-        let root = accepted_root(ray, sphere, own, range);
-        if root.counts {
-            nearest = Hit(true, root.t, sphere, root.inside);
-            range.t_max = root.t;
-        }
-    }
-    return nearest;
+fn no_hit() -> Hit {
+    return Hit(false, distance_of(FAR), 0u, false);
 }
 
 // Whether a root that counts lies beyond t_min and before t = 1.
@@ -91,16 +81,4 @@ fn blocks(ray: Ray, sphere: u32, own: Own) -> bool {
         return own.inside && t > t_min && t < real(1.0);
     }
     return root_between(ray, sphere, t_min);
-}
-
-// Whether any sphere stands between the ray's origin and t = 1.
-fn any_hit(ray: Ray, own: Own) -> bool {
-    var blocked = false;
-    for (var sphere = first_sphere(); sphere < sphere_count(); sphere++) {
-        blocked |= blocks(ray, sphere, own);
-        if MANY && blocked {
-            break;
-        }
-    }
-    return blocked;
 }

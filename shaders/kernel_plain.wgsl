@@ -22,7 +22,7 @@ struct Approach {
 
 fn approach(ray: Ray, sphere: u32) -> Approach {
     let shape = shapes[sphere];
-    let from_center = difference(ray.origin, shape.center);
+    let from_center = difference(ray.origin, shape.center_radius.xyz);
     var origin = from_center.hi;
     var origin_low = from_center.lo;
     var direction = ray.direction;
@@ -39,7 +39,8 @@ fn approach(ray: Ray, sphere: u32) -> Approach {
     // What the difference lost matters for the closest point alone. An error of b/a moves the point along the ray, which
     // changes its distance to second order only.
     let perpendicular = along(origin, direction, b * inv_a) + origin_low;
-    let discriminant = shape.radius * shape.radius - dot(perpendicular, perpendicular);
+    let radius = shape.center_radius.w;
+    let discriminant = radius * radius - dot(perpendicular, perpendicular);
     return Approach(origin, direction, a, b, perpendicular, discriminant);
 }
 
@@ -53,7 +54,7 @@ struct Roots {
 
 fn roots(ray: Ray, sphere: u32) -> Roots {
     let at = approach(ray, sphere);
-    let radius = shapes[sphere].radius;
+    let radius = shapes[sphere].center_radius.w;
     let hits = at.discriminant >= real(0.0);
     let root = sqrt(at.a * at.discriminant);
     let c = dot(at.origin, at.origin) - radius * radius;
@@ -68,7 +69,7 @@ fn roots(ray: Ray, sphere: u32) -> Roots {
 // Whether a root lies beyond t_min and before t = 1: from where both ends lie, without a square root.
 fn root_between(ray: Ray, sphere: u32, t_min: real) -> bool {
     let at = approach(ray, sphere);
-    let radius = shapes[sphere].radius;
+    let radius = shapes[sphere].center_radius.w;
     let start = at.origin + at.direction * t_min;
     let end = at.origin + at.direction;
     let end_squared = dot(end, end);

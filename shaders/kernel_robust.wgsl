@@ -57,7 +57,7 @@ struct Approach {
 fn approach(ray: Ray, sphere: u32) -> Approach {
     let shape = shapes[sphere];
     let low = shapes_low[sphere];
-    var origin = pair_difference3(ray.origin, Pair3(shape.center, low.center));
+    var origin = pair_difference3(ray.origin, Pair3(shape.center_radius.xyz, low.center_radius.xyz));
     var direction = ray.direction;
     if ELLIPSOIDS {
         let inv_scale = Pair3(shape.inv_scale, low.inv_scale);
@@ -67,7 +67,7 @@ fn approach(ray: Ray, sphere: u32) -> Approach {
     let moment = pair_cross(origin, direction);
     let a = pair_dot(direction, direction);
     let minus_b = pair_dot(origin, direction);
-    let radius = Pair(shape.radius, low.radius);
+    let radius = Pair(shape.center_radius.w, low.center_radius.w);
     let radius_squared = pair_product(radius, radius);
     let c = pair_difference(pair_dot(origin, origin), radius_squared);
     let far = pair_difference(pair_product(a, radius_squared), pair_dot(moment, moment));
@@ -122,6 +122,11 @@ fn place_of(sphere: u32, local: vec3r) -> Point {
     if ELLIPSOIDS {
         offset *= materials[sphere].scale;
     }
-    let place = two_sum3(shapes[sphere].center, offset);
-    return fast_two_sum3(place.hi, place.lo + shapes_low[sphere].center);
+    let place = two_sum3(shapes[sphere].center_radius.xyz, offset);
+    return fast_two_sum3(place.hi, place.lo + shapes_low[sphere].center_radius.xyz);
+}
+
+// A place seen from a corner of the world, in f32.
+fn offset_from(place: Point, corner: vec3<f32>) -> vec3<f32> {
+    return (place.hi - corner) + place.lo;
 }

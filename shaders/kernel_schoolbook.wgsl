@@ -12,11 +12,11 @@ struct Approach {
 
 fn approach(ray: Ray, sphere: u32) -> Approach {
     let shape = shapes[sphere];
-    let origin = (ray.origin - shape.center) * shape.inv_scale;
+    let origin = (ray.origin - shape.center_radius.xyz) * shape.inv_scale;
     let direction = ray.direction * shape.inv_scale;
     let a = dot(direction, direction);
     let b = dot(origin, direction);
-    let c = dot(origin, origin) - shape.radius * shape.radius;
+    let c = dot(origin, origin) - shape.center_radius.w * shape.center_radius.w;
     return Approach(origin, direction, a, b, b * b - a * c);
 }
 

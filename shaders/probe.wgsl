@@ -54,7 +54,7 @@ fn probe_nearest(@builtin(global_invocation_id) id: vec3<u32>) {
 // Whether something stands between the origin and t = 1.
 @compute @workgroup_size(64)
 fn probe_blocked(@builtin(global_invocation_id) id: vec3<u32>) {
-    let blocked = any_hit(probe_ray(id.x), probe_own(probe_words[id.x]));
+    let blocked = any_hit(probe_ray(id.x), probe_own(probe_words[id.x]), 0u);
     probe_flags[id.x] = vec2<u32>(select(0u, PROBE_BLOCKED, blocked), 0u);
     probe_values[id.x] = real(0.0);
 }
@@ -71,7 +71,7 @@ fn probe_lit(@builtin(global_invocation_id) id: vec3<u32>) {
         let shadow_ray = ray_to_light(surface.position, id.x);
         n_dot_l = dot(surface.normal, direction_of(shadow_ray) * (real(1.0) / sqrt(shadow_ray.a)));
         bits |= select(0u, PROBE_FACING, n_dot_l > real(0.0));
-        bits |= select(0u, PROBE_BLOCKED, any_hit(shadow_ray, surface.own));
+        bits |= select(0u, PROBE_BLOCKED, any_hit(shadow_ray, surface.own, id.x));
     }
     probe_flags[id.x] = vec2<u32>(bits, hit.sphere);
     probe_values[id.x] = n_dot_l;

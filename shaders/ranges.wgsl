@@ -1,13 +1,11 @@
 // Spheres and lights of any number in storage buffers, of which each ray of a batch sees its own range; otherwise many.wgsl.
 
 @group(0) @binding(1) var<storage, read> shapes: array<Shape>;
-@group(0) @binding(3) var<storage, read> lights: array<Light>;
 // What rounding took from each of their numbers, for the tiers that carry it.
 @group(0) @binding(9) var<storage, read> shapes_low: array<Shape>;
-@group(0) @binding(10) var<storage, read> lights_low: array<Light>;
 
 // Whether leaving a loop over the spheres early pays.
-const MANY: bool = true;
+const LEAVES_EARLY: bool = true;
 
 // Set by the entry points of probe.wgsl.
 var<private> first_of_range: u32;

@@ -33,7 +33,12 @@ fn direction_of(ray: Ray) -> vec3r {
 // The place of a point of the sphere's surface, given in object space.
 fn place_of(sphere: u32, local: vec3r) -> Point {
     if ELLIPSOIDS {
-        return shapes[sphere].center + local * materials[sphere].scale;
+        return shapes[sphere].center_radius.xyz + local * materials[sphere].scale;
     }
-    return shapes[sphere].center + local;
+    return shapes[sphere].center_radius.xyz + local;
+}
+
+// A place seen from a corner of the world, in f32.
+fn offset_from(place: Point, corner: vec3<f32>) -> vec3<f32> {
+    return vec3<f32>(place - vec3r(corner));
 }

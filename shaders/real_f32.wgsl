@@ -1,7 +1,9 @@
 // The scalar of the kernel: f32.
 
 alias real = f32;
+alias vec2r = vec2<f32>;
 alias vec3r = vec3<f32>;
+alias vec4r = vec4<f32>;
 
 // Greater roots, infinity and NaN are never a hit.
 const FAR: real = 3e38;

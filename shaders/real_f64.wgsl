@@ -1,7 +1,9 @@
 // The scalar of the kernel: f64. Vulkan has no f64 exp and log, so they are here.
 
 alias real = f64;
+alias vec2r = vec2<f64>;
 alias vec3r = vec3<f64>;
+alias vec4r = vec4<f64>;
 
 // Greater roots, infinity and NaN are never a hit.
 const FAR: real = 3e38lf;

@@ -71,7 +71,7 @@ fn local_color(surface: Surface) -> vec3r {
                 if COUNT_RAYS {
                     shadow_rays++;
                 }
-                if any_hit(shadow_ray, surface.own) {
+                if any_hit(shadow_ray, surface.own, index) {
                     continue;
                 }
             }

@@ -15,6 +15,19 @@ struct Params {
     quantize_bias: real,
     // What rounding took from near.
     near_low: real,
+    // The corner of the grid with the least coordinates, and cells per unit of length.
+    grid_low: vec3<f32>,
+    // Shift from pixels to the tiles that have lists.
+    screen_shift: u32,
+    grid_per_unit: vec3<f32>,
+    // Such tiles in a row.
+    screen_across: u32,
+    // Number of cells along each axis.
+    grid_cells: vec3<u32>,
+    // Where in `lists` the offsets of the grid's cells begin; those of the tiles are first.
+    grid_offsets: u32,
+    // What a blocker must be farther from the light than a point, beside REACH radii, to end a light's list.
+    light_slack: real,
     sphere_count: u32,
     light_count: u32,
     max_depth: u32,
@@ -24,9 +37,8 @@ struct Params {
 
 // What the intersection reads of a sphere.
 struct Shape {
-    center: vec3r,
-    // In object space.
-    radius: real,
+    // Centre in the world, radius in object space: one vector, since each load costs where lanes read different spheres.
+    center_radius: vec4r,
     // World to object space.
     inv_scale: vec3r,
     // Lowest index of a sphere with this very surface.
@@ -50,7 +62,7 @@ struct Light {
     intensity: vec3r,
 }
 
-// Bindings 1 and 3, and their low parts 9 and 10, are in many.wgsl or few.wgsl: shapes and lights.
+// Bindings 1 and 3, and their low parts 9 and 10, shapes and lights, are in few.wgsl or in many.wgsl and lights_*.wgsl.
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(2) var<storage, read> materials: array<Material>;
 // x of each column and y of each row of samples on the image plane; for the tiers that carry it, what rounding took from each follows in
@@ -59,10 +71,3 @@ struct Light {
 @group(0) @binding(5) var<storage, read> rows: array<real>;
 // Top-left pixel of each tile that a sphere may cover.
 @group(0) @binding(6) var<storage, read> tiles: array<vec2<u32>>;
-// One pixel of this dispatch each, tile by tile: red, green, blue in the low bytes, status in the high one.
-@group(0) @binding(7) var<storage, read_write> pixels: array<u32>;
-// With COUNT_RAYS, the shadow rays (low half) and reflection rays (high half) of each of those pixels.
-@group(0) @binding(8) var<storage, read_write> ray_counts: array<u32>;
-
-var<private> shadow_rays: u32;
-var<private> reflection_rays: u32;

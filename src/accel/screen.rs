@@ -17,6 +17,8 @@ pub struct ScreenLists {
     pub shift: u32,
     /// Tiles in a row.
     pub across: u32,
+    width: u32,
+    height: u32,
 }
 
 struct Tiles<'a> {
@@ -37,7 +39,8 @@ impl ScreenLists {
             let (across, down) = (camera.width().div_ceil(edge), camera.height().div_ceil(edge));
             let tiles = Tiles { enclosure, camera, shift, across, down };
             if across * down == 1 || u64::from(across) * u64::from(down) + tiles.rectangles(limit) <= limit {
-                return Self { lists: Lists::build(&tiles), shift, across };
+                let (width, height) = (camera.width(), camera.height());
+                return Self { lists: Lists::build(&tiles), shift, across, width, height };
             }
             shift += 1;
         }
@@ -47,6 +50,14 @@ impl ScreenLists {
     pub fn tile(&self, i: u32, j: u32) -> usize {
         let edge = TILE << self.shift;
         (j / edge) as usize * self.across as usize + (i / edge) as usize
+    }
+
+    /// Top-left pixels of the tiles of [`TILE`] pixels that any sphere may cover, in rows `first` to `first + count`, in
+    /// reading order; `first` is a multiple of [`TILE`].
+    pub fn covered(&self, first: u32, count: u32) -> Vec<[u32; 2]> {
+        let rows = (first..(first + count).min(self.height)).step_by(TILE as usize);
+        let places = rows.flat_map(|y| (0..self.width).step_by(TILE as usize).map(move |x| [x, y]));
+        places.filter(|&[x, y]| !self.at(x, y).is_empty()).collect()
     }
 
     /// The spheres that the pixel in column `i` and row `j` may see.

@@ -5,12 +5,14 @@ use super::device::Gpu;
 use super::error::Error;
 use super::pack::Packed;
 use super::shader::{Kernel, Module};
+use crate::accel::Acceleration;
+use crate::camera::Camera;
 use crate::effects::Effects;
 use crate::scene::Scene;
 use crate::settings::Settings;
 
 /// Values before the spheres, of each sphere, of each light, and after the lights.
-const COUNTS: [usize; 4] = [16, 19, 6, 2];
+const COUNTS: [usize; 4] = [29, 19, 6, 2];
 
 /// Packs `scene` and lets the device write back every field in the order of `shaders/echo.wgsl`: numbers as the bits of
 /// their nearest `f32`.
@@ -21,7 +23,8 @@ pub fn echo_layout(
     effects: &Effects,
     kernel: Kernel,
 ) -> Result<Vec<u32>, Error> {
-    let packed = Packed::new(scene, settings, effects, kernel);
+    let accel = Acceleration::new(scene, &Camera::new(scene, settings), effects.set, kernel.rounding());
+    let packed = Packed::new(scene, settings, effects, kernel, &accel);
     let [head, sphere, light, tail] = COUNTS;
     let job = Job {
         what: "echoing the layout",

@@ -4,8 +4,9 @@
 //! reads values back from the device.
 
 use bytemuck::Pod;
-use glam::DVec3;
+use glam::{DVec3, UVec3};
 
+use crate::accel;
 use crate::scene;
 
 /// Declares a struct as the shader lays it out, with the offsets of its fields.
@@ -36,9 +37,23 @@ pub struct ParamValues {
     pub shadow_t_min: f64,
     pub reflection_t_min: f64,
     pub quantize_bias: f64,
+    pub lists: ListValues,
     pub sphere_count: u32,
     pub light_count: u32,
     pub max_depth: u32,
+}
+
+/// Where the lists of spheres are.
+#[derive(Debug, Clone, Copy, Default)]
+#[allow(missing_docs, reason = "the fields are those of Params")]
+pub struct ListValues {
+    pub grid_low: DVec3,
+    pub screen_shift: u32,
+    pub grid_per_unit: DVec3,
+    pub screen_across: u32,
+    pub grid_cells: UVec3,
+    pub grid_offsets: u32,
+    pub light_slack: f64,
 }
 
 /// A shape before it is rounded.
@@ -58,6 +73,7 @@ pub trait Layout {
     type Shape: Pod;
     type Material: Pod;
     type Light: Pod;
+    type Face: Pod;
     /// The scalar.
     type Real: Pod;
     /// The nearest scalar.
@@ -68,18 +84,20 @@ pub trait Layout {
     fn shape(values: &ShapeValues) -> Self::Shape;
     fn material(sphere: &scene::Sphere, scale: DVec3) -> Self::Material;
     fn light(light: &scene::Light) -> Self::Light;
+    /// `base` is where in the lists the offsets of the first light's cells are.
+    fn face(face: &accel::Face, base: u32) -> Self::Face;
 }
 
 /// Declares the structs for one scalar, with the numbers of `u32` that pad each.
 macro_rules! layout {
-    ($(#[$doc:meta])* $module:ident, $real:ty, params $params:literal, shape $shape:literal, material $material:literal, light $light:literal) => {
+    ($(#[$doc:meta])* $module:ident, $real:ty, params $params:literal, shape $shape:literal, material $material:literal, light $light:literal, face $face0:literal $face1:literal) => {
         $(#[$doc])*
         pub mod $module {
             use bytemuck::{Pod, Zeroable};
             use glam::DVec3;
 
             use super::{ParamValues, ShapeValues};
-            use crate::scene;
+            use crate::{accel, scene};
 
             shader_struct! {
                 /// Parameters of one dispatch.
@@ -100,6 +118,20 @@ macro_rules! layout {
                     quantize_bias: $real,
                     /// What rounding took from `near`.
                     near_low: $real,
+                    /// The corner of the grid with the least coordinates.
+                    grid_low: [f32; 3],
+                    /// Shift from pixels to the tiles that have lists.
+                    screen_shift: u32,
+                    /// Cells of the grid per unit of length.
+                    grid_per_unit: [f32; 3],
+                    /// Tiles with lists in a row.
+                    screen_across: u32,
+                    /// Number of cells along each axis.
+                    grid_cells: [u32; 3],
+                    /// Where in the lists the offsets of the grid's cells begin.
+                    grid_offsets: u32,
+                    /// What a blocker must be farther from the light than a point to end a light's list.
+                    light_slack: $real,
                     /// Number of spheres.
                     sphere_count: u32,
                     /// Number of lights.
@@ -116,10 +148,8 @@ macro_rules! layout {
             shader_struct! {
                 /// What the intersection reads of a sphere.
                 Shape {
-                    /// Centre in world space.
-                    center: [$real; 3],
-                    /// Radius in object space.
-                    radius: $real,
+                    /// Centre in world space and radius in object space.
+                    center_radius: [$real; 4],
                     /// World to object space.
                     inv_scale: [$real; 3],
                     /// Lowest index of a sphere with this very surface.
@@ -165,6 +195,24 @@ macro_rules! layout {
                 }
             }
 
+            shader_struct! {
+                /// One side of the cube of directions around a light.
+                Face {
+                    /// Least u and v of any sphere.
+                    low: [$real; 2],
+                    /// Cells per unit of u and v.
+                    per_unit: $real,
+                    /// Where in the lists the offsets of its cells begin.
+                    first: u32,
+                    /// To the alignment that WGSL gives the next vector.
+                    padding0: [u32; $face0],
+                    /// Number of cells along u and v.
+                    cells: [u32; 2],
+                    /// To the size that WGSL gives the struct.
+                    padding1: [u32; $face1],
+                }
+            }
+
             /// Packs into these structs; every number is rounded once, to the nearest.
             #[derive(Debug, Clone, Copy)]
             pub struct Layout;
@@ -174,6 +222,7 @@ macro_rules! layout {
                 type Shape = Shape;
                 type Material = Material;
                 type Light = Light;
+                type Face = Face;
                 type Real = $real;
 
                 fn real(x: f64) -> $real {
@@ -194,6 +243,13 @@ macro_rules! layout {
                         reflection_t_min: Self::real(values.reflection_t_min),
                         quantize_bias: Self::real(values.quantize_bias),
                         near_low: Self::real(Self::residual(values.near)),
+                        grid_low: values.lists.grid_low.as_vec3().to_array(),
+                        screen_shift: values.lists.screen_shift,
+                        grid_per_unit: values.lists.grid_per_unit.as_vec3().to_array(),
+                        screen_across: values.lists.screen_across,
+                        grid_cells: values.lists.grid_cells.to_array(),
+                        grid_offsets: values.lists.grid_offsets,
+                        light_slack: Self::real(values.lists.light_slack),
                         sphere_count: values.sphere_count,
                         light_count: values.light_count,
                         max_depth: values.max_depth,
@@ -203,8 +259,7 @@ macro_rules! layout {
 
                 fn shape(values: &ShapeValues) -> Shape {
                     Shape {
-                        center: vector(values.center),
-                        radius: Self::real(values.radius),
+                        center_radius: values.center.extend(values.radius).to_array().map(Self::real),
                         inv_scale: vector(values.inv_scale),
                         index: values.index,
                         ..Shape::zeroed()
@@ -231,6 +286,16 @@ macro_rules! layout {
                         ..Light::zeroed()
                     }
                 }
+
+                fn face(face: &accel::Face, base: u32) -> Face {
+                    Face {
+                        low: face.low.map(Self::real),
+                        per_unit: Self::real(face.per_unit),
+                        first: base + face.first,
+                        cells: face.cells,
+                        ..Face::zeroed()
+                    }
+                }
             }
 
             fn vector(v: DVec3) -> [$real; 3] {
@@ -242,19 +307,20 @@ macro_rules! layout {
 
 layout!(
     /// The structs of the `f32` kernels.
-    single, f32, params 0, shape 0, material 1, light 1
+    single, f32, params 3, shape 0, material 1, light 1, face 0 2
 );
 layout!(
     /// The structs of the `f64` kernels.
-    double, f64, params 4, shape 1, material 2, light 2
+    double, f64, params 6, shape 1, material 2, light 2, face 1 2
 );
 
 const _: () = {
-    assert!(size_of::<single::Params>() == 64 && std::mem::offset_of!(single::Params, sphere_count) == 48);
+    assert!(size_of::<single::Params>() == 128 && std::mem::offset_of!(single::Params, sphere_count) == 100);
     assert!(size_of::<single::Shape>() == 32 && std::mem::offset_of!(single::Shape, inv_scale) == 16);
     assert!(size_of::<single::Material>() == 48 && std::mem::offset_of!(single::Material, ks) == 32);
     assert!(size_of::<single::Light>() == 32 && std::mem::offset_of!(single::Light, intensity) == 16);
-    assert!(size_of::<double::Params>() == 128 && std::mem::offset_of!(double::Params, sphere_count) == 96);
+    assert!(size_of::<single::Face>() == 32 && size_of::<double::Face>() == 48);
+    assert!(size_of::<double::Params>() == 192 && std::mem::offset_of!(double::Params, sphere_count) == 152);
     assert!(size_of::<double::Shape>() == 64 && std::mem::offset_of!(double::Shape, inv_scale) == 32);
     assert!(size_of::<double::Material>() == 96 && std::mem::offset_of!(double::Material, ks) == 64);
     assert!(size_of::<double::Light>() == 64 && std::mem::offset_of!(double::Light, intensity) == 32);

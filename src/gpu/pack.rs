@@ -3,8 +3,9 @@
 use bytemuck::Pod;
 use glam::DVec3;
 
-use super::layout::{Layout, ParamValues, ShapeValues, double, single};
+use super::layout::{Layout, ListValues, ParamValues, ShapeValues, double, single};
 use super::shader::Kernel;
+use crate::accel::{Acceleration, Lists};
 use crate::camera::{Camera, NEAR_T_MIN};
 use crate::effects::{Effect, Effects};
 use crate::geometry::{Ellipsoid, ellipsoids, shape_indices};
@@ -26,10 +27,15 @@ pub(super) struct Packed {
     pub(super) columns: Vec<u8>,
     /// y of each sample row on the image plane, likewise.
     pub(super) rows: Vec<u8>,
+    /// The lists of spheres: all offsets, then all entries.
+    pub(super) lists: Vec<u32>,
+    /// Six faces a light with lists.
+    pub(super) faces: Vec<u8>,
     /// What rounding took from spheres and lights, for the tier that carries it.
     pub(super) low: Option<Low>,
     pub(super) shape_size: usize,
     pub(super) light_size: usize,
+    pub(super) face_size: usize,
 }
 
 /// What rounding took from each number, in the same layout.
@@ -41,16 +47,29 @@ pub(super) struct Low {
 
 impl Packed {
     /// Packs `scene` for a pipeline that simulates `effects` with `kernel`.
-    pub(super) fn new(scene: &Scene, settings: &Settings, effects: &Effects, kernel: Kernel) -> Self {
+    pub(super) fn new(
+        scene: &Scene,
+        settings: &Settings,
+        effects: &Effects,
+        kernel: Kernel,
+        accel: &Acceleration,
+    ) -> Self {
         if kernel.is_double() {
-            pack::<double::Layout>(scene, settings, effects, false)
+            pack::<double::Layout>(scene, settings, effects, false, accel)
         } else {
-            pack::<single::Layout>(scene, settings, effects, kernel.carries_low())
+            pack::<single::Layout>(scene, settings, effects, kernel.carries_low(), accel)
         }
     }
 }
 
-fn pack<L: Layout>(scene: &Scene, settings: &Settings, effects: &Effects, with_low: bool) -> Packed {
+fn pack<L: Layout>(
+    scene: &Scene,
+    settings: &Settings,
+    effects: &Effects,
+    with_low: bool,
+    accel: &Acceleration,
+) -> Packed {
+    let (lists, [lights_base, grid_offsets]) = joined_lists(accel);
     let on = |effect| effects.set.has(effect);
     let camera = Camera::new(scene, settings);
     let ellipsoids = ellipsoids(scene, on(Effect::Ellipsoids));
@@ -70,6 +89,7 @@ fn pack<L: Layout>(scene: &Scene, settings: &Settings, effects: &Effects, with_l
         shadow_t_min: settings.secondary.shadow_t_min(),
         reflection_t_min: settings.secondary.reflection_t_min(),
         quantize_bias: settings.quantize.bias(),
+        lists: list_values(accel, grid_offsets),
         sphere_count: scene.spheres.len() as u32,
         light_count: scene.lights.len() as u32,
         max_depth: effects.depth,
@@ -91,9 +111,46 @@ fn pack<L: Layout>(scene: &Scene, settings: &Settings, effects: &Effects, with_l
         lights: bytes(scene.lights.iter().map(L::light)),
         columns: reals(&columns),
         rows: reals(&rows),
+        lists,
+        faces: bytes(accel.lights.faces.iter().flatten().map(|face| L::face(face, lights_base))),
         low: with_low.then(low),
         shape_size: size_of::<L::Shape>(),
         light_size: size_of::<L::Light>(),
+        face_size: size_of::<L::Face>(),
+    }
+}
+
+/// All lists in one buffer, tiles first, and where the offsets of lights and grid begin there.
+fn joined_lists(accel: &Acceleration) -> (Vec<u32>, [u32; 2]) {
+    let none = Lists { offsets: vec![0], entries: Vec::new() };
+    let grid = accel.grid.as_ref().map_or(&none, |grid| &grid.lists);
+    let all = [&accel.screen.lists, &accel.lights.lists, grid];
+    let bases = [0, all[0].offsets.len(), all[0].offsets.len() + all[1].offsets.len()];
+    let mut entries_base = bases[2] + all[2].offsets.len();
+    let mut joined = Vec::with_capacity(entries_base + all.iter().map(|lists| lists.entries.len()).sum::<usize>());
+    for lists in all {
+        joined.extend(lists.offsets.iter().map(|offset| offset + entries_base as u32));
+        entries_base += lists.entries.len();
+    }
+    all.iter().for_each(|lists| joined.extend_from_slice(&lists.entries));
+    (joined, [bases[1] as u32, bases[2] as u32])
+}
+
+/// Where the shader finds the lists.
+fn list_values(accel: &Acceleration, grid_offsets: u32) -> ListValues {
+    let screen = ListValues {
+        // From pixels to tiles with lists.
+        screen_shift: TILE.trailing_zeros() + accel.screen.shift,
+        screen_across: accel.screen.across,
+        light_slack: accel.lights.slack,
+        grid_offsets,
+        ..ListValues::default()
+    };
+    match &accel.grid {
+        None => screen,
+        Some(grid) => {
+            ListValues { grid_low: grid.low, grid_per_unit: grid.per_unit, grid_cells: grid.cells, ..screen }
+        }
     }
 }
 

@@ -1,8 +1,8 @@
-//! From effects to a compiled kernel: the only place that sets the constants of `shaders/effects.wgsl`.
+//! From effects to compiled kernels: the only place that sets the constants of `shaders/effects.wgsl`.
 
 use super::device::Gpu;
 use super::error::Error;
-use super::shader::{Kernel, Module};
+use super::shader::{Kernel, Module, Storage};
 use crate::effects::{Effect, EffectSet};
 use crate::scene::Scene;
 use crate::settings::{Secondary, Settings, Specular};
@@ -10,6 +10,10 @@ use crate::settings::{Secondary, Settings, Specular};
 /// Up to this many spheres and lights a pipeline is compiled for their very number: the array lengths in
 /// `shaders/few.wgsl`.
 pub(super) const MAX_FEW: usize = 16;
+/// Up to this many lights lie in a uniform buffer: the array lengths in `shaders/lights_uniform.wgsl`.
+pub(super) const MAX_UNIFORM_LIGHTS: usize = 256;
+/// Up to this many lights have lists: a sixth of the array length in `shaders/lists.wgsl`.
+pub(super) const MAX_LISTED_LIGHTS: usize = 32;
 
 /// What a pipeline is specialised for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -22,8 +26,8 @@ pub struct Specialisation {
     pub skip_self: bool,
     /// Whether the specular term is (N·H)ⁿ.
     pub blinn: bool,
-    /// Numbers of spheres and lights, where they are few enough to be compiled in.
-    pub few: Option<[u32; 2]>,
+    /// How spheres and lights reach it.
+    pub storage: Storage,
     /// Side of the grid of samples in a pixel.
     pub samples: u32,
     /// Whether each pixel also says how many rays it took.
@@ -33,13 +37,20 @@ pub struct Specialisation {
 impl Specialisation {
     /// For `scene` with `effects` under `settings`.
     pub fn new(scene: &Scene, settings: &Settings, effects: EffectSet, kernel: Kernel) -> Self {
-        let few = scene.spheres.len().max(scene.lights.len()) <= MAX_FEW;
+        let (spheres, lights) = (scene.spheres.len(), scene.lights.len());
+        let storage = if spheres.max(lights) <= MAX_FEW {
+            Storage::Few([spheres as u32, lights as u32])
+        } else if lights <= MAX_UNIFORM_LIGHTS {
+            Storage::Many
+        } else {
+            Storage::ManyLights
+        };
         Self {
             kernel,
             effects,
             skip_self: settings.secondary == Secondary::SkipSelf,
             blinn: settings.specular == Specular::Blinn,
-            few: few.then_some([scene.spheres.len() as u32, scene.lights.len() as u32]),
+            storage,
             samples: settings.samples,
             count_rays: false,
         }
@@ -61,30 +72,151 @@ impl Specialisation {
             ("SAMPLES", f64::from(self.samples)),
             ("COUNT_RAYS", f64::from(self.count_rays)),
         ];
-        if let Some([spheres, lights]) = self.few {
+        if let Storage::Few([spheres, lights]) = self.storage {
             constants.extend([("SPHERE_COUNT", f64::from(spheres)), ("LIGHT_COUNT", f64::from(lights))]);
         }
         constants
     }
+
+    /// Whether samples go on as paths.
+    pub(super) fn has_paths(&self) -> bool {
+        self.effects.has(Effect::Reflections)
+    }
+
+    /// The effects whose rays find their spheres in lists: primary rays always do.
+    pub(super) fn listed_effects(&self) -> EffectSet {
+        match self.storage {
+            Storage::Few(_) => self.effects.with(Effect::Shadows, false).with(Effect::Reflections, false),
+            _ => self.effects,
+        }
+    }
+
+    /// The module that renders.
+    pub fn module(&self) -> Module {
+        Module::render(self.kernel, self.storage, self.samples > 1)
+    }
 }
 
 /// The entry point that renders tiles.
-pub const ENTRY_POINT: &str = "render_tiles";
+pub const RENDER_TILES: &str = "render_tiles";
+/// The entry point that follows paths by one bounce.
+pub const TRACE_PATHS: &str = "trace_paths";
 
-/// Compiles the render kernel.
-pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<wgpu::ComputePipeline, Error> {
-    let module = gpu.shader_module(&Module::render(specialisation.kernel, specialisation.few.is_some()))?;
-    gpu.checked("compiling the kernel", || {
-        gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(ENTRY_POINT),
-            layout: None,
-            module: &module,
-            entry_point: Some(ENTRY_POINT),
+/// How a binding is used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Access {
+    Uniform,
+    Read,
+    ReadWrite,
+}
+
+use Access::{Read, ReadWrite, Uniform};
+
+/// A compiled kernel and the bindings that it reads.
+#[derive(Debug)]
+pub(super) struct Stage {
+    pub(super) pipeline: wgpu::ComputePipeline,
+    layout: wgpu::BindGroupLayout,
+    bindings: Vec<u32>,
+}
+
+impl Stage {
+    /// Binds those of `buffers` that the kernel reads.
+    pub(super) fn bind(&self, gpu: &Gpu, buffers: &[(u32, &wgpu::Buffer)]) -> wgpu::BindGroup {
+        let used = buffers.iter().filter(|(binding, _)| self.bindings.contains(binding));
+        let entries: Vec<_> = used
+            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding: *binding, resource: buffer.as_entire_binding() })
+            .collect();
+        let descriptor = wgpu::BindGroupDescriptor { label: None, layout: &self.layout, entries: &entries };
+        gpu.device.create_bind_group(&descriptor)
+    }
+}
+
+/// The kernels of a picture.
+#[derive(Debug)]
+pub(super) struct Stages {
+    pub(super) tiles: Stage,
+    /// One bounce of the paths, and what goes between two bounces; where there are reflections.
+    pub(super) bounces: Option<(Stage, Stage)>,
+    /// From samples to pixels, where there are several a pixel.
+    pub(super) resolve: Option<Stage>,
+}
+
+/// Compiles the kernels of a picture.
+pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stages, Error> {
+    let constants = specialisation.constants();
+    let module = gpu.shader_module(&specialisation.module())?;
+    let looped = |few, many| if matches!(specialisation.storage, Storage::Few(_)) { few } else { many };
+    let lights = if specialisation.storage == Storage::ManyLights { Read } else { Uniform };
+    let mut common = vec![(0, Uniform), (1, looped(Uniform, Read)), (2, Read), (3, lights), (7, ReadWrite)];
+    common.extend([(8, ReadWrite), (11, ReadWrite), (12, ReadWrite)]);
+    if specialisation.kernel.carries_low() {
+        common.extend([(9, looped(Uniform, Read)), (10, lights)]);
+    }
+    if !matches!(specialisation.storage, Storage::Few(_)) {
+        common.extend([(13, Read), (14, Uniform)]);
+    }
+    let mut tiles = common.clone();
+    tiles.extend([(4, Read), (5, Read), (6, Read)]);
+    let tiles = stage(gpu, &module, RENDER_TILES, &constants, &tiles)?;
+    let bounces = if specialisation.has_paths() {
+        let paths = stage(gpu, &module, TRACE_PATHS, &constants, &common)?;
+        let advance = gpu.shader_module(&Module::advance())?;
+        Some((paths, stage(gpu, &advance, "advance", &[], &[(12, ReadWrite), (16, ReadWrite)])?))
+    } else {
+        None
+    };
+    let resolve = if specialisation.samples > 1 {
+        let module = gpu.shader_module(&Module::resolve(specialisation.kernel))?;
+        let constants = [("SAMPLES", f64::from(specialisation.samples))];
+        Some(stage(gpu, &module, "resolve", &constants, &[(0, Uniform), (7, Read), (15, ReadWrite)])?)
+    } else {
+        None
+    };
+    Ok(Stages { tiles, bounces, resolve })
+}
+
+fn stage(
+    gpu: &Gpu,
+    module: &wgpu::ShaderModule,
+    entry_point: &str,
+    constants: &[(&str, f64)],
+    bindings: &[(u32, Access)],
+) -> Result<Stage, Error> {
+    let entry = |&(binding, access): &(u32, Access)| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty: wgpu::BindingType::Buffer {
+            ty: match access {
+                Uniform => wgpu::BufferBindingType::Uniform,
+                Read => wgpu::BufferBindingType::Storage { read_only: true },
+                ReadWrite => wgpu::BufferBindingType::Storage { read_only: false },
+            },
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        count: None,
+    };
+    let entries: Vec<_> = bindings.iter().map(entry).collect();
+    gpu.checked("compiling the kernels", || {
+        let descriptor = wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries };
+        let layout = gpu.device.create_bind_group_layout(&descriptor);
+        let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: None,
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(entry_point),
+            layout: Some(&pipeline_layout),
+            module,
+            entry_point: Some(entry_point),
             compilation_options: wgpu::PipelineCompilationOptions {
-                constants: &specialisation.constants(),
+                constants,
                 zero_initialize_workgroup_memory: false,
             },
             cache: None,
-        })
+        });
+        Stage { pipeline, layout, bindings: bindings.iter().map(|(binding, _)| *binding).collect() }
     })
 }

@@ -8,11 +8,11 @@ use wgpu::util::DeviceExt;
 
 use super::device::Gpu;
 use super::error::Error;
-use super::layout::{Layout, ParamValues, ShapeValues, double, single};
+use super::layout::{Layout, ListValues, ParamValues, ShapeValues, double, single};
 use super::pack::{bytes, low_light, low_shape, shape_values};
 use super::pipeline::Specialisation;
 use super::readable::Readable;
-use super::shader::{Kernel, Module};
+use super::shader::{Kernel, Module, Storage};
 use crate::camera::NEAR_T_MIN;
 use crate::effects::EffectSet;
 use crate::geometry::{Ellipsoid, range_factor, shape_indices};
@@ -253,7 +253,7 @@ impl<'a> Prober<'a> {
             effects: EffectSet::ALL,
             skip_self: true,
             blinn: false,
-            few: None,
+            storage: Storage::Ranges,
             count_rays: false,
             samples: 1,
         };
@@ -364,6 +364,7 @@ fn params<L: Layout>() -> Vec<u8> {
         shadow_t_min: 0.0,
         reflection_t_min: 0.0,
         quantize_bias: 0.0,
+        lists: ListValues::default(),
         sphere_count: 0,
         light_count: 0,
         max_depth: 0,

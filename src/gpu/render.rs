@@ -8,16 +8,18 @@ use wgpu::util::DeviceExt;
 use super::device::Gpu;
 use super::error::Error;
 use super::pack::Packed;
-use super::pipeline::{MAX_FEW, Specialisation, compile};
+use super::pipeline::{MAX_FEW, MAX_LISTED_LIGHTS, MAX_UNIFORM_LIGHTS, Specialisation, Stages, compile};
 use super::readable::Readable;
+use super::shader::Storage;
 use super::timestamps::Timestamps;
+use crate::accel::Acceleration;
 use crate::camera::Camera;
 use crate::effects::{Effect, Effects};
 use crate::geometry::in_range;
 use crate::precision::Tier;
 use crate::scene::Scene;
 use crate::settings::Settings;
-use crate::tiles::{Cover, TILE};
+use crate::tiles::TILE;
 
 /// Pixels of a tile.
 const TILE_PIXELS: usize = (TILE * TILE) as usize;
@@ -27,6 +29,9 @@ const TARGET_DISPATCH: Duration = Duration::from_millis(25);
 const FIRST_DISPATCH_TESTS: u64 = 4_000_000;
 /// Tiles of a dispatch at the most, for the size of the pixel buffer: 16 MiB.
 const MAX_DISPATCH_TILES: u32 = 65_536;
+
+/// Memory for paths at the most.
+const MAX_PATH_BYTES: u64 = 64 << 20;
 
 /// Times of the work on the device so far.
 #[derive(Debug, Clone, Copy, Default)]
@@ -51,15 +56,16 @@ pub struct DeviceTimes {
 #[derive(Debug)]
 pub struct GpuRenderer<'a> {
     gpu: &'a Gpu,
-    cover: Cover,
+    accel: Acceleration,
     width: u32,
     /// Samples of a pixel.
     samples: u64,
     /// Number of tiles of the whole picture; no band has more.
     picture_tiles: u64,
     background: [u8; 3],
-    kernel: Option<Kernel>,
-    kernel_inputs: Inputs,
+    max_depth: u32,
+    work: Option<Work>,
+    inputs: Inputs,
     tiles_per_dispatch: u32,
     times: DeviceTimes,
     timestamps: Option<Timestamps>,
@@ -67,49 +73,61 @@ pub struct GpuRenderer<'a> {
     rays: [u64; 2],
 }
 
-/// Everything that is needed to build the kernel once a tile asks for it.
+/// Everything that is needed to build the kernels once a tile asks for them.
 #[derive(Debug)]
 struct Inputs {
     packed: Packed,
     specialisation: Specialisation,
 }
 
-/// The compiled pipeline with its buffers.
+/// The compiled kernels with their buffers.
 #[derive(Debug)]
-struct Kernel {
-    pipeline: wgpu::ComputePipeline,
-    bind_group: wgpu::BindGroup,
+struct Work {
+    stages: Stages,
+    tiles_group: wgpu::BindGroup,
+    /// For one bounce, and for what goes between two.
+    bounce_groups: Option<[wgpu::BindGroup; 2]>,
+    resolve_group: Option<wgpu::BindGroup>,
     tiles: wgpu::Buffer,
+    stage: wgpu::Buffer,
+    /// Workgroups of the next bounce.
+    workgroups: wgpu::Buffer,
     pixels: Readable,
     ray_counts: Readable,
     /// Tiles that the buffers hold.
     capacity: u32,
 }
 
+/// Invocations of a workgroup of the kernels that are not over tiles.
+const GROUP: u64 = 64;
+
 impl<'a> GpuRenderer<'a> {
-    /// Prepares `scene` for `gpu`; the kernel is compiled when the first tile needs it.
+    /// Prepares `scene` for `gpu`; the kernels are compiled when the first tile needs them.
     pub fn new(gpu: &'a Gpu, scene: &Scene, settings: &Settings, effects: &Effects, tier: Tier) -> Result<Self, Error> {
         let kernel = gpu.kernel(tier)?;
         let (scene, settings) = in_range(scene, settings);
         let (scene, settings) = (scene.as_ref(), &settings);
-        let packed = Packed::new(scene, settings, effects, kernel);
-        check_fits(gpu, &packed)?;
+        let specialisation = Specialisation::new(scene, settings, effects.set, kernel);
         let camera = Camera::new(scene, settings);
+        let accel = Acceleration::new(scene, &camera, specialisation.listed_effects(), kernel.rounding());
+        let packed = Packed::new(scene, settings, effects, kernel, &accel);
+        check_fits(gpu, &packed)?;
         let samples = u64::from(settings.samples * settings.samples);
         let tests_per_pixel = samples
-            * (scene.spheres.len() as u64 + 1)
+            * (scene.spheres.len().min(64) as u64 + 1)
             * (1 + scene.lights.len() as u64 * u64::from(effects.set.has(Effect::Shadows)))
             * (1 + u64::from(effects.depth));
         let first = FIRST_DISPATCH_TESTS / (tests_per_pixel * TILE_PIXELS as u64);
         Ok(Self {
             gpu,
-            cover: Cover::new(scene, &camera, effects.set.has(Effect::Ellipsoids)),
+            accel,
             width: scene.width,
             samples,
             picture_tiles: u64::from(scene.width.div_ceil(TILE)) * u64::from(scene.height.div_ceil(TILE)),
             background: settings.quantize.levels(scene.background),
-            kernel: None,
-            kernel_inputs: Inputs { packed, specialisation: Specialisation::new(scene, settings, effects.set, kernel) },
+            max_depth: effects.depth,
+            work: None,
+            inputs: Inputs { packed, specialisation },
             tiles_per_dispatch: first.clamp(1, u64::from(MAX_DISPATCH_TILES)) as u32,
             times: DeviceTimes::default(),
             timestamps: None,
@@ -124,7 +142,7 @@ impl<'a> GpuRenderer<'a> {
 
     /// Counts rays from now on; before the first row only.
     pub fn count_rays(&mut self) {
-        self.kernel_inputs.specialisation.count_rays = true;
+        self.inputs.specialisation.count_rays = true;
     }
 
     /// Reads the device's own clock from now on; returns whether it has one.
@@ -136,7 +154,7 @@ impl<'a> GpuRenderer<'a> {
     /// Primary, shadow and reflection rays so far; `None` where they are not counted.
     pub fn rays(&self) -> Option<[u64; 3]> {
         let primary = self.times.tiles * TILE_PIXELS as u64 * self.samples;
-        self.kernel_inputs.specialisation.count_rays.then_some([primary, self.rays[0], self.rays[1]])
+        self.inputs.specialisation.count_rays.then_some([primary, self.rays[0], self.rays[1]])
     }
 
     /// Renders rows `first` on (a multiple of [`TILE`]) into `rgb`, whole rows of 3 bytes a pixel; returns how many pixels
@@ -147,43 +165,54 @@ impl<'a> GpuRenderer<'a> {
         let background = self.background;
         rgb.par_chunks_mut(row_bytes).for_each(|row| row.as_chunks_mut::<3>().0.fill(background));
 
-        let tiles = self.cover.tiles(first, count);
+        let tiles = self.accel.screen.covered(first, count);
         let mut not_finite = 0;
         let mut rest = tiles.as_slice();
         while !rest.is_empty() {
-            let kernel = match self.kernel.take() {
-                Some(kernel) => kernel,
-                None => self.build_kernel()?,
+            let work = match self.work.take() {
+                Some(work) => work,
+                None => self.build()?,
             };
-            let limit = self.gpu.info.max_workgroups.min(kernel.capacity).min(self.tiles_per_dispatch);
-            let (now, later) = rest.split_at(rest.len().min(limit as usize));
-            let took = self.dispatch(&kernel, now)?;
-            not_finite += self.read_back(&kernel, now, first, rgb)?;
-            self.add_rays(&kernel, now.len())?;
-            self.kernel = Some(kernel);
+            let (now, later) = rest.split_at(rest.len().min(work.capacity.min(self.tiles_per_dispatch) as usize));
+            let took = self.dispatch(&work, now)?;
+            not_finite += self.read_back(&work, now, first, rgb)?;
+            self.add_rays(&work, now.len())?;
+            self.work = Some(work);
             self.set_pace(now.len(), took);
             rest = later;
         }
         Ok(not_finite)
     }
 
-    /// Compiles the pipeline and runs it once, since drivers finish compiling at the first dispatch.
-    fn build_kernel(&mut self) -> Result<Kernel, Error> {
+    /// Compiles the kernels and runs them once, since drivers finish compiling at the first dispatch.
+    fn build(&mut self) -> Result<Work, Error> {
         let start = Instant::now();
         let gpu = self.gpu;
-        let Inputs { packed, specialisation } = &self.kernel_inputs;
-        let pipeline = compile(gpu, specialisation)?;
-        let capacity = self.picture_tiles.min(u64::from(MAX_DISPATCH_TILES.min(gpu.info.max_workgroups))) as u32;
-        let kernel =
-            gpu.checked("reserving buffers", || Kernel::new(gpu, pipeline, packed, capacity, specialisation))?;
-        self.submit(&kernel, &[[0, 0]])?;
+        let Inputs { packed, specialisation } = &self.inputs;
+        let stages = compile(gpu, specialisation)?;
+        let capacity = self.capacity();
+        let work = gpu.checked("reserving buffers", || Work::new(gpu, stages, packed, capacity, specialisation))?;
+        self.submit(&work, &[[0, 0]])?;
         self.times.compile = start.elapsed();
-        Ok(kernel)
+        Ok(work)
     }
 
-    fn dispatch(&mut self, kernel: &Kernel, tiles: &[[u32; 2]]) -> Result<Duration, Error> {
+    /// How many tiles a dispatch has at the most: as their buffers and the device's limits allow.
+    fn capacity(&self) -> u32 {
+        let info = &self.gpu.info;
+        let specialisation = &self.inputs.specialisation;
+        let path = 2 * specialisation.kernel.path_size() * u64::from(specialisation.has_paths());
+        let tile_bytes = TILE_PIXELS as u64 * self.samples * path.max(4);
+        let bytes = MAX_PATH_BYTES.min(info.max_storage_binding).min(info.max_buffer);
+        // Paths take a workgroup for so many of them.
+        let groups = u64::from(info.max_workgroups) * GROUP / (TILE_PIXELS as u64 * self.samples);
+        let limit = u64::from(MAX_DISPATCH_TILES.min(info.max_workgroups)).min(groups).min(bytes / tile_bytes);
+        self.picture_tiles.min(limit).max(1) as u32
+    }
+
+    fn dispatch(&mut self, work: &Work, tiles: &[[u32; 2]]) -> Result<Duration, Error> {
         let start = Instant::now();
-        self.submit(kernel, tiles)?;
+        self.submit(work, tiles)?;
         let took = start.elapsed();
         self.times.render += took;
         if let Some(timestamps) = &self.timestamps {
@@ -195,18 +224,38 @@ impl<'a> GpuRenderer<'a> {
         Ok(took)
     }
 
-    /// Runs the kernel over `tiles` and waits for it.
-    fn submit(&self, kernel: &Kernel, tiles: &[[u32; 2]]) -> Result<(), Error> {
-        self.gpu.queue.write_buffer(&kernel.tiles, 0, bytemuck::cast_slice(tiles));
+    /// Runs all stages over `tiles` and waits for them.
+    fn submit(&self, work: &Work, tiles: &[[u32; 2]]) -> Result<(), Error> {
+        self.gpu.queue.write_buffer(&work.tiles, 0, bytemuck::cast_slice(tiles));
+        // The first stage's paths go into the first half.
+        let half = work.capacity * TILE_PIXELS as u32 * self.samples as u32;
+        self.gpu.queue.write_buffer(&work.stage, 0, bytemuck::cast_slice(&[half, 0, 0, 0, 0]));
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                 label: None,
                 timestamp_writes: self.timestamps.as_ref().map(Timestamps::writes),
             });
-            pass.set_pipeline(&kernel.pipeline);
-            pass.set_bind_group(0, &kernel.bind_group, &[]);
+            pass.set_pipeline(&work.stages.tiles.pipeline);
+            pass.set_bind_group(0, &work.tiles_group, &[]);
             pass.dispatch_workgroups(tiles.len() as u32, 1, 1);
+            if let (Some((paths, advance)), Some([paths_group, advance_group])) =
+                (&work.stages.bounces, &work.bounce_groups)
+            {
+                for _ in 0..self.max_depth {
+                    pass.set_pipeline(&advance.pipeline);
+                    pass.set_bind_group(0, advance_group, &[]);
+                    pass.dispatch_workgroups(1, 1, 1);
+                    pass.set_pipeline(&paths.pipeline);
+                    pass.set_bind_group(0, paths_group, &[]);
+                    pass.dispatch_workgroups_indirect(&work.workgroups, 0);
+                }
+            }
+            if let (Some(resolve), Some(group)) = (&work.stages.resolve, &work.resolve_group) {
+                pass.set_pipeline(&resolve.pipeline);
+                pass.set_bind_group(0, group, &[]);
+                pass.dispatch_workgroups(tiles.len() as u32, 1, 1);
+            }
         }
         if let Some(timestamps) = &self.timestamps {
             timestamps.resolve(&mut encoder);
@@ -216,22 +265,23 @@ impl<'a> GpuRenderer<'a> {
     }
 
     /// Puts the pixels of `tiles` into `rgb`, whose first row is `first`.
-    fn read_back(&mut self, kernel: &Kernel, tiles: &[[u32; 2]], first: u32, rgb: &mut [u8]) -> Result<u64, Error> {
+    fn read_back(&mut self, work: &Work, tiles: &[[u32; 2]], first: u32, rgb: &mut [u8]) -> Result<u64, Error> {
         let start = Instant::now();
         let width = self.width;
         let place = |pixels: &[u32]| place_tiles(pixels, tiles, first, width, rgb);
-        let not_finite = kernel.pixels.read(self.gpu, tiles.len() * TILE_PIXELS, place)?;
+        let not_finite = work.pixels.read(self.gpu, tiles.len() * TILE_PIXELS, place)?;
         self.times.read_back += start.elapsed();
         Ok(not_finite)
     }
 
     /// Adds up the ray counts of the last dispatch of so many tiles.
-    fn add_rays(&mut self, kernel: &Kernel, tiles: usize) -> Result<(), Error> {
-        if self.kernel_inputs.specialisation.count_rays {
+    fn add_rays(&mut self, work: &Work, tiles: usize) -> Result<(), Error> {
+        if self.inputs.specialisation.count_rays {
             let sum = |counts: &[u32]| {
                 counts.iter().fold([0, 0], |[s, r], count| [s + u64::from(count & 0xffff), r + u64::from(count >> 16)])
             };
-            let [shadow, reflection] = kernel.ray_counts.read(self.gpu, tiles * TILE_PIXELS, sum)?;
+            let values = tiles * TILE_PIXELS * self.samples as usize;
+            let [shadow, reflection] = work.ray_counts.read(self.gpu, values, sum)?;
             self.rays = [self.rays[0] + shadow, self.rays[1] + reflection];
         }
         Ok(())
@@ -244,14 +294,8 @@ impl<'a> GpuRenderer<'a> {
     }
 }
 
-impl Kernel {
-    fn new(
-        gpu: &Gpu,
-        pipeline: wgpu::ComputePipeline,
-        packed: &Packed,
-        capacity: u32,
-        specialisation: &Specialisation,
-    ) -> Self {
+impl Work {
+    fn new(gpu: &Gpu, stages: Stages, packed: &Packed, capacity: u32, specialisation: &Specialisation) -> Self {
         let device = &gpu.device;
         let filled = |contents: &[u8], usage| {
             // A binding of size 0 is not allowed; the kernel never reads past the counts.
@@ -262,41 +306,56 @@ impl Kernel {
             device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
         };
         let storage = wgpu::BufferUsages::STORAGE;
-        // What loops read: few elements go into a uniform buffer of fixed size.
-        let looped = |contents: &[u8], element_size: usize| {
-            if specialisation.few.is_none() {
-                return filled(contents, storage);
-            }
-            let mut padded = vec![0; MAX_FEW * element_size];
+        let uniform = wgpu::BufferUsages::UNIFORM;
+        // Uniform buffers have a fixed number of elements.
+        let fixed = |contents: &[u8], len: usize, element_size: usize| {
+            let mut padded = vec![0; len * element_size];
             padded[..contents.len()].copy_from_slice(contents);
-            filled(&padded, wgpu::BufferUsages::UNIFORM)
+            filled(&padded, uniform)
         };
-        let tiles = empty(u64::from(capacity) * 8, storage | wgpu::BufferUsages::COPY_DST);
-        let values = u64::from(capacity) * TILE_PIXELS as u64;
-        let pixels = Readable::new(gpu, values);
-        let ray_counts = Readable::new(gpu, if specialisation.count_rays { values } else { 1 });
-        let mut inputs = vec![
-            (0, filled(&packed.params, wgpu::BufferUsages::UNIFORM)),
-            (1, looped(&packed.shapes, packed.shape_size)),
+        let shapes = |contents: &[u8]| match specialisation.storage {
+            Storage::Few(_) => fixed(contents, MAX_FEW, packed.shape_size),
+            _ => filled(contents, storage),
+        };
+        let lights = |contents: &[u8]| match specialisation.storage {
+            Storage::Few(_) => fixed(contents, MAX_FEW, packed.light_size),
+            Storage::Many => fixed(contents, MAX_UNIFORM_LIGHTS, packed.light_size),
+            _ => filled(contents, storage),
+        };
+        let pixel_count = u64::from(capacity) * TILE_PIXELS as u64;
+        let slots = pixel_count * u64::from(specialisation.samples * specialisation.samples);
+        let pixels = Readable::new(gpu, pixel_count);
+        let ray_counts = Readable::new(gpu, if specialisation.count_rays { slots } else { 1 });
+        let path_size = specialisation.kernel.path_size();
+        let paths = if specialisation.has_paths() { 2 * slots * path_size } else { path_size };
+        let color_size = if specialisation.kernel.is_double() { 32 } else { 16 };
+        let mut buffers = vec![
+            (0, filled(&packed.params, uniform)),
+            (1, shapes(&packed.shapes)),
             (2, filled(&packed.materials, storage)),
-            (3, looped(&packed.lights, packed.light_size)),
+            (3, lights(&packed.lights)),
             (4, filled(&packed.columns, storage)),
             (5, filled(&packed.rows, storage)),
+            (11, empty(paths, storage)),
+            (13, filled(bytemuck::cast_slice(&packed.lists), storage)),
+            (14, fixed(&packed.faces, 6 * MAX_LISTED_LIGHTS, packed.face_size)),
         ];
         if let Some(low) = &packed.low {
-            inputs.extend([(9, looped(&low.shapes, packed.shape_size)), (10, looped(&low.lights, packed.light_size))]);
+            buffers.extend([(9, shapes(&low.shapes)), (10, lights(&low.lights))]);
         }
-        let own = [(6, &tiles), (7, &pixels.buffer), (8, &ray_counts.buffer)];
-        let buffers = inputs.iter().map(|(binding, buffer)| (*binding, buffer)).chain(own);
-        let entries: Vec<_> = buffers
-            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
-            .collect();
-        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: None,
-            layout: &pipeline.get_bind_group_layout(0),
-            entries: &entries,
-        });
-        Self { pipeline, bind_group, tiles, pixels, ray_counts, capacity }
+        let tiles = empty(u64::from(capacity) * 8, storage | wgpu::BufferUsages::COPY_DST);
+        let stage = empty(20, storage | wgpu::BufferUsages::COPY_DST);
+        let workgroups = empty(12, storage | wgpu::BufferUsages::INDIRECT);
+        let colors = stages.resolve.as_ref().map(|_| empty(slots * color_size, storage));
+        let results = colors.as_ref().unwrap_or(&pixels.buffer);
+        let mut all: Vec<_> = buffers.iter().map(|(binding, buffer)| (*binding, buffer)).collect();
+        all.extend([(6, &tiles), (7, results), (8, &ray_counts.buffer), (12, &stage), (15, &pixels.buffer)]);
+        all.push((16, &workgroups));
+        let tiles_group = stages.tiles.bind(gpu, &all);
+        let bounce_groups =
+            stages.bounces.as_ref().map(|(paths, advance)| [paths.bind(gpu, &all), advance.bind(gpu, &all)]);
+        let resolve_group = stages.resolve.as_ref().map(|resolve| resolve.bind(gpu, &all));
+        Self { stages, tiles_group, bounce_groups, resolve_group, tiles, stage, workgroups, pixels, ray_counts, capacity }
     }
 }
 
@@ -307,6 +366,7 @@ fn check_fits(gpu: &Gpu, packed: &Packed) -> Result<(), Error> {
         ("lights", packed.lights.len()),
         ("columns", packed.columns.len()),
         ("rows", packed.rows.len()),
+        ("lists", packed.lists.len() * 4),
     ];
     let limit = gpu.info.max_storage_binding.min(gpu.info.max_buffer);
     match sizes.iter().find(|(_, size)| *size as u64 > limit) {

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use crate::accel::Rounding;
 use crate::precision::Tier;
 
 /// One file of `shaders/`.
@@ -48,6 +49,26 @@ impl Kernel {
         matches!(self, Self::Tier(Tier::Robust) | Self::Pairs | Self::NoBarrier)
     }
 
+    /// Bytes of a `Path` of `shaders/main.wgsl`; a test holds them together.
+    pub fn path_size(self) -> u64 {
+        match (self.is_double(), self.carries_low()) {
+            (true, _) => 128,
+            (false, true) => 80,
+            (false, false) => 64,
+        }
+    }
+
+    /// How it rounds.
+    pub fn rounding(self) -> Rounding {
+        if self.is_double() {
+            Rounding::DOUBLE
+        } else if self.carries_low() {
+            Rounding::COMPENSATED
+        } else {
+            Rounding::SINGLE
+        }
+    }
+
     /// Whether it calculates in `f64`.
     pub fn is_double(self) -> bool {
         self == Self::Tier(Tier::Double)
@@ -55,13 +76,15 @@ impl Kernel {
 }
 
 /// How spheres and lights reach the kernel.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Storage {
-    /// In uniform buffers, their number compiled in.
-    Few,
-    /// In storage buffers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Storage {
+    /// In uniform buffers, the numbers of spheres and lights compiled in.
+    Few([u32; 2]),
+    /// Spheres in storage buffers, with lists of those that a ray can meet; lights in uniform buffers.
     Many,
-    /// In storage buffers, a range for each ray.
+    /// Spheres likewise, lights in storage buffers as well.
+    ManyLights,
+    /// In storage buffers, a range for each ray of a batch.
     Ranges,
 }
 
@@ -72,11 +95,16 @@ fn data_parts(kernel: Kernel, storage: Storage) -> Vec<Part> {
         if kernel.is_double() { part!("real_f64.wgsl") } else { part!("real_f32.wgsl") },
         part!("types.wgsl"),
         match storage {
-            Storage::Few => part!("few.wgsl"),
-            Storage::Many => part!("many.wgsl"),
+            Storage::Few(_) => part!("few.wgsl"),
+            Storage::Many | Storage::ManyLights => part!("many.wgsl"),
             Storage::Ranges => part!("ranges.wgsl"),
         },
     ];
+    match storage {
+        Storage::Few(_) => {}
+        Storage::Many => parts.push(part!("lights_uniform.wgsl")),
+        Storage::ManyLights | Storage::Ranges => parts.push(part!("lights_storage.wgsl")),
+    }
     if !kernel.is_double() {
         parts.push(barrier);
     }
@@ -98,6 +126,10 @@ fn intersection_parts(kernel: Kernel, storage: Storage) -> Vec<Part> {
         Kernel::Schoolbook => vec![real, plain_ray, part!("kernel_schoolbook.wgsl")],
     });
     parts.push(part!("intersect.wgsl"));
+    parts.push(match storage {
+        Storage::Few(_) | Storage::Ranges => part!("every.wgsl"),
+        Storage::Many | Storage::ManyLights => part!("lists.wgsl"),
+    });
     parts
 }
 
@@ -110,10 +142,25 @@ pub struct Module {
 }
 
 impl Module {
-    /// The module that renders tiles with `kernel`, for few spheres and lights or for any number.
-    pub fn render(kernel: Kernel, few: bool) -> Self {
-        let mut parts = intersection_parts(kernel, if few { Storage::Few } else { Storage::Many });
+    /// The module that renders with `kernel`, one sample a pixel or several.
+    pub fn render(kernel: Kernel, storage: Storage, samples: bool) -> Self {
+        let mut parts = intersection_parts(kernel, storage);
+        parts.extend([part!("film.wgsl"), part!("quantize.wgsl")]);
+        parts.push(if samples { part!("film_samples.wgsl") } else { part!("film_pixels.wgsl") });
         parts.extend([part!("shade.wgsl"), part!("trace.wgsl"), part!("main.wgsl")]);
+        Self::join(parts)
+    }
+
+    /// The module that goes from one bounce of the paths to the next.
+    pub fn advance() -> Self {
+        Self::join(vec![part!("stage.wgsl")])
+    }
+
+    /// The module that makes pixels of samples.
+    pub fn resolve(kernel: Kernel) -> Self {
+        let mut parts = vec![part!("effects.wgsl")];
+        parts.extend(data_parts(kernel, Storage::Many));
+        parts.extend([part!("quantize.wgsl"), part!("resolve.wgsl")]);
         Self::join(parts)
     }
 
@@ -130,7 +177,7 @@ impl Module {
 
     /// The module that writes back what it reads.
     pub fn echo(kernel: Kernel) -> Self {
-        let mut parts = data_parts(kernel, Storage::Many);
+        let mut parts = data_parts(kernel, Storage::ManyLights);
         parts.push(part!("echo.wgsl"));
         Self::join(parts)
     }
@@ -138,7 +185,7 @@ impl Module {
     /// The module that sends batches of rays through `kernel`.
     pub fn probe(kernel: Kernel) -> Self {
         let mut parts = intersection_parts(kernel, Storage::Ranges);
-        parts.extend([part!("shade.wgsl"), part!("trace.wgsl"), part!("probe.wgsl")]);
+        parts.extend([part!("film.wgsl"), part!("shade.wgsl"), part!("trace.wgsl"), part!("probe.wgsl")]);
         parts.push(if kernel.carries_low() { part!("probe_robust.wgsl") } else { part!("probe_plain.wgsl") });
         Self::join(parts)
     }

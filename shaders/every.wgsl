@@ -1,0 +1,37 @@
+// The nearest hit and any hit among all spheres of first_sphere() and sphere_count().
+
+// The nearest intersection in the range; of equal ones the lowest index.
+fn nearest_hit(ray: Ray, own: Own, within: Range) -> Hit {
+    var range = within;
+    var nearest = no_hit();
+    for (var sphere = first_sphere(); sphere < sphere_count(); sphere++) {
+        let root = accepted_root(ray, sphere, own, range);
+        if root.counts {
+            nearest = Hit(true, root.t, sphere, root.inside);
+            range.t_max = root.t;
+        }
+    }
+    return nearest;
+}
+
+// The nearest intersection of a primary ray through the tile of this pixel.
+fn nearest_seen(ray: Ray, pixel: vec2<u32>) -> Hit {
+    return nearest_hit(ray, Own(NO_SHAPE, false, vec3r()), primary_range());
+}
+
+// The nearest intersection of a reflection ray.
+fn nearest_reflected(ray: Ray, own: Own) -> Hit {
+    return nearest_hit(ray, own, reflection_range());
+}
+
+// Whether any sphere stands between the ray's origin and the light with this index, at t = 1.
+fn any_hit(ray: Ray, own: Own, light: u32) -> bool {
+    var blocked = false;
+    for (var sphere = first_sphere(); sphere < sphere_count(); sphere++) {
+        blocked |= blocks(ray, sphere, own);
+        if LEAVES_EARLY && blocked {
+            break;
+        }
+    }
+    return blocked;
+}

@@ -1,0 +1,16 @@
+// Where the result of a sample goes.
+
+// Samples of this dispatch, tile by tile, pixel by pixel, have a slot each.
+// With COUNT_RAYS, the shadow rays (low half) and reflection rays (high half) of each slot.
+@group(0) @binding(8) var<storage, read_write> ray_counts: array<u32>;
+
+var<private> shadow_rays: u32;
+var<private> reflection_rays: u32;
+
+fn keep_counts(slot: u32, before: u32) {
+    if COUNT_RAYS {
+        let shadow = min(shadow_rays + (before & 0xffffu), 0xffffu);
+        let reflection = min(reflection_rays + (before >> 16u), 0xffffu);
+        ray_counts[slot] = shadow | (reflection << 16u);
+    }
+}

@@ -1,0 +1,8 @@
+// One sample a pixel: its result is the pixel.
+
+// Red, green, blue in the low bytes, status in the high one.
+@group(0) @binding(7) var<storage, read_write> pixels: array<u32>;
+
+fn finish(slot: u32, color: vec3r) {
+    pixels[slot] = packed_pixel(color);
+}

@@ -1,0 +1,12 @@
+// From colours to levels.
+
+// The status byte of a pixel.
+const STATUS_FINITE: u32 = 0u;
+const STATUS_NOT_FINITE: u32 = 1u;
+
+fn packed_pixel(color: vec3r) -> u32 {
+    let level = vec3<u32>(real(255.0) * clamp(color, vec3r(), vec3r(real(1.0))) + params.quantize_bias);
+    let finite = is_finite(color.x) && is_finite(color.y) && is_finite(color.z);
+    let status = select(STATUS_NOT_FINITE, STATUS_FINITE, finite);
+    return level.x | (level.y << 8u) | (level.z << 16u) | (status << 24u);
+}
