@@ -5,6 +5,7 @@
 //! dispatch → rows of pixels → file. `cpu` and `gpu` never see each other; both read [`scene`], [`effects`], [`camera`]
 //! and [`geometry`].
 
+pub mod bench;
 pub mod camera;
 pub mod cli;
 pub mod compare;
@@ -15,6 +16,8 @@ pub mod film;
 pub mod geometry;
 pub mod gpu;
 pub mod precision;
+mod random;
+mod report;
 pub mod scene;
 pub mod settings;
 pub mod stress;

@@ -1,9 +1,11 @@
 //! The command line: one file for each subcommand.
 
+mod bench;
 mod check;
 mod compare;
 mod devices;
 mod failure;
+mod files;
 mod input;
 mod options;
 mod output;
@@ -50,6 +52,8 @@ enum Command {
     Study(study::Args),
     /// Check on this device what each tier promises of hard cases
     Stress(stress::Args),
+    /// Measure how fast built-in scenes of growing size are rendered
+    Bench(bench::Args),
     /// List the Vulkan devices
     Devices(devices::Args),
 }
@@ -77,6 +81,7 @@ pub fn run() -> ExitCode {
         Some(Command::Check(args)) => check::run(&args),
         Some(Command::Study(args)) => study::run(&args),
         Some(Command::Stress(args)) => stress::run(&args),
+        Some(Command::Bench(args)) => bench::run(&args),
         Some(Command::Devices(args)) => devices::run(&args),
     };
     ExitCode::from(code)
