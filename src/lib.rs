@@ -12,6 +12,7 @@ pub mod compare;
 pub mod cpu;
 pub mod effects;
 pub mod engine;
+pub mod export;
 pub mod film;
 pub mod geometry;
 pub mod gpu;

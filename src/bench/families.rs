@@ -19,8 +19,8 @@ const DEPTHS: [f64; 2] = [15.0, 30.0];
 const VARIATION: f64 = 0.3;
 /// Centres of the clusters.
 const CLUSTERS: usize = 20;
-/// Clusters are so much smaller than the room that their spheres would have had, and so are the spheres.
-const SHRINK: f64 = 0.5;
+/// Clusters and the spheres in them are so much smaller than as many spheres at random.
+const SHRINK: f64 = 0.6;
 /// Spheres of the scenes that differ in their lights.
 const LIT_SPHERES: usize = 100;
 
@@ -263,7 +263,7 @@ fn scene(count: usize, look: &Look) -> Scene {
     framed((0..count).map(one).collect())
 }
 
-/// The same room, lights and look with every sphere moved near one of a few centres, uniform in the distance from it.
+/// The same room, lights and look with every sphere near one of a few centres, uniform in the distance from it.
 fn clustered(count: usize) -> Scene {
     let random = &mut Random::new(SEED, count as u64);
     let centers: Vec<_> = (0..CLUSTERS).map(|_| in_frustum(random)).collect();

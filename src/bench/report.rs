@@ -39,7 +39,7 @@ fn facts(bench: &Bench) -> Markup {
             dt { "Device" }
             dd { (bench.device_name()) }
             dt { "CPU" }
-            dd { "the reference in " code { "f64" } ", brute force, " (bench.cpu_threads) " threads" }
+            dd { "the reference in " code { "f64" } ", " (bench.cpu_threads) " threads" }
             dt { "Picture" }
             dd { "greatest depth " (bench.settings.max_depth) ", " (bench.settings.samples.pow(2)) " samples a pixel" }
             dt { "Runs" }

@@ -4,6 +4,7 @@ mod bench;
 mod check;
 mod compare;
 mod devices;
+mod export;
 mod failure;
 mod files;
 mod input;
@@ -54,6 +55,8 @@ enum Command {
     Stress(stress::Args),
     /// Measure how fast built-in scenes of growing size are rendered
     Bench(bench::Args),
+    /// Write a scene for POV-Ray or Tachyon
+    Export(export::Args),
     /// List the Vulkan devices
     Devices(devices::Args),
 }
@@ -82,6 +85,7 @@ pub fn run() -> ExitCode {
         Some(Command::Study(args)) => study::run(&args),
         Some(Command::Stress(args)) => stress::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),
+        Some(Command::Export(args)) => export::run(&args),
         Some(Command::Devices(args)) => devices::run(&args),
     };
     ExitCode::from(code)
