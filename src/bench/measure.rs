@@ -290,10 +290,12 @@ fn measure_scene(
         };
         let rgb = vec![0; scene.width as usize * scene.height as usize * 3];
         let mut contestant = Contestant { backend, measured, rgb };
-        // The first run counts the rays, the second compiles the kernel that is timed.
-        let warm_up = contestant
-            .run(&scene, subject, &effects, true)
-            .and_then(|_| contestant.run(&scene, subject, &effects, false));
+        // Rays are counted in a run of its own where that takes another kernel; then the kernel that is timed is compiled.
+        let counted = match forecast.renderer {
+            Renderer::Device => contestant.run(&scene, subject, &effects, true).map(|_| ()),
+            Renderer::Cpu => Ok(()),
+        };
+        let warm_up = counted.and_then(|()| contestant.run(&scene, subject, &effects, false));
         let ms = match warm_up {
             Ok(ms) => ms,
             Err(gpu::Error::NoDevice(reason)) => {

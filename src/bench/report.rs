@@ -128,7 +128,7 @@ fn method(bench: &Bench) -> Markup {
                 " writes them as scene files."
             }
             li {
-                "Each renderer made one picture to count its rays and one to warm up, then " (bench.runs) " pictures that count, device \
+                "Each renderer warmed up, the device also to count its rays, then came " (bench.runs) " pictures that count, device \
                  and CPU in turn, so that a slow moment of the machine meets both alike. Every picture starts from the scene."
             }
             li {

@@ -150,7 +150,7 @@ fn render_one(args: &Args, mut loaded: Loaded, gpu: Option<&Gpu>, open_time: Dur
         settings,
         effects,
         precision: gpu.map(|_| selection),
-        rays: engine.rays(),
+        rays: engine.rays().filter(|_| !args.no_ray_counts),
         not_finite_pixels: not_finite,
         parse_ms: ms(loaded.parse_time),
         open_ms: ms(open_time),
