@@ -17,6 +17,9 @@ use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::study::Skipped;
 
+/// By how much a forecast has to exceed the budget before a scene is not even tried.
+const DOUBT: f64 = 2.0;
+
 /// What to measure.
 #[derive(Debug, Clone)]
 pub struct Plan {
@@ -272,9 +275,10 @@ fn measure_scene(
     let mut contestants = Vec::new();
     for forecast in forecasts {
         let mut skip = |reason| skipped.push(Skipped { name: forecast.renderer.name().into(), reason });
-        let budget_ms = plan.seconds * 1e3;
-        if let Some(ms) = forecast.of(size).filter(|ms| *ms > budget_ms) {
-            skip(format!("one picture would take about {}, more than the {} s for all runs", time(ms), plan.seconds));
+        let (budget, runs) = (plan.seconds, plan.runs);
+        let all_runs = |ms: f64| ms * runs as f64 / 1e3;
+        if let Some(ms) = forecast.of(size).filter(|ms| all_runs(*ms) > DOUBT * budget) {
+            skip(format!("{runs} runs would take about {}, the budget is {budget} s", time(ms * runs as f64)));
             continue;
         }
         let backend = match (forecast.renderer, subject.gpu) {
@@ -305,9 +309,8 @@ fn measure_scene(
             Err(error) => return Err(error),
         };
         forecast.points.push((size as f64, ms));
-        if ms * plan.runs as f64 > budget_ms {
-            let runs = plan.runs;
-            skip(format!("one picture took {}, so {runs} runs would exceed the {} s", time(ms), plan.seconds));
+        if all_runs(ms) > budget {
+            skip(format!("one picture took {}, so {runs} runs would exceed the budget of {budget} s", time(ms)));
             continue;
         }
         contestant.reset();

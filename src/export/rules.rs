@@ -51,13 +51,13 @@ fn beside(window: &Window, sphere: &Sphere) -> bool {
     let (left, right) = (left.min(right), left.max(right));
     let (bottom, top) = (bottom.min(top), bottom.max(top));
     let radius = sphere.scale.abs().max_element();
-    // A pixel's sample may lie on an edge of the window, or a pixel beyond.
-    let margin = 1.01;
+    // Samples may lie on the edges of the window.
+    let (aside, above) = (0.01 * (right - left), 0.01 * (top - bottom));
     let outward = [
-        DVec3::new(near, 0.0, right + (right - left) * (margin - 1.0)),
-        DVec3::new(-near, 0.0, -left + (right - left) * (margin - 1.0)),
-        DVec3::new(0.0, near, top + (top - bottom) * (margin - 1.0)),
-        DVec3::new(0.0, -near, -bottom + (top - bottom) * (margin - 1.0)),
+        DVec3::new(near, 0.0, right + aside),
+        DVec3::new(-near, 0.0, aside - left),
+        DVec3::new(0.0, near, top + above),
+        DVec3::new(0.0, -near, above - bottom),
     ];
     outward.into_iter().any(|normal| normal.normalize().dot(sphere.center) > radius)
 }

@@ -186,10 +186,17 @@ fn what_takes_too_long_is_skipped_and_said_to_be() {
     let result = measure(None, &["spheres"], 0.0);
     let scenes = &result.families[0].scenes;
     // The first size is tried, the next one forecast.
-    assert!(scenes[0].skipped[0].reason.contains("2 runs would exceed the 0 s"), "{}", scenes[0].skipped[0].reason);
-    assert!(scenes[1].skipped[0].reason.contains("would take about"), "{}", scenes[1].skipped[0].reason);
+    assert!(
+        scenes[0].skipped[0].reason.contains("2 runs would exceed the budget of 0 s"),
+        "{}",
+        scenes[0].skipped[0].reason
+    );
+    assert!(scenes[1].skipped[0].reason.contains("2 runs would take about"), "{}", scenes[1].skipped[0].reason);
     assert!(scenes.iter().all(|scene| scene.measured.is_empty()) && result.families[0].growth.is_empty());
-    assert!(csv(&result).contains("would take about") && html(&result, "trueray").contains("would take about"));
+    assert!(
+        csv(&result).contains("2 runs would take about")
+            && html(&result, "trueray").contains("2 runs would take about")
+    );
 }
 
 #[test]
