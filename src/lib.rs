@@ -6,16 +6,20 @@
 //! and [`geometry`].
 
 pub mod accel;
+pub mod bench;
 pub mod camera;
 pub mod cli;
 pub mod compare;
 pub mod cpu;
 pub mod effects;
 pub mod engine;
+pub mod export;
 pub mod film;
 pub mod geometry;
 pub mod gpu;
 pub mod precision;
+mod random;
+mod report;
 pub mod scene;
 pub mod settings;
 pub mod stress;

@@ -1,9 +1,12 @@
 //! The command line: one file for each subcommand.
 
+mod bench;
 mod check;
 mod compare;
 mod devices;
+mod export;
 mod failure;
+mod files;
 mod input;
 mod options;
 mod output;
@@ -50,6 +53,10 @@ enum Command {
     Study(study::Args),
     /// Check on this device what each tier promises of hard cases
     Stress(stress::Args),
+    /// Measure how fast built-in scenes of growing size are rendered
+    Bench(bench::Args),
+    /// Write a scene for POV-Ray or Tachyon
+    Export(export::Args),
     /// List the Vulkan devices
     Devices(devices::Args),
 }
@@ -77,6 +84,8 @@ pub fn run() -> ExitCode {
         Some(Command::Check(args)) => check::run(&args),
         Some(Command::Study(args)) => study::run(&args),
         Some(Command::Stress(args)) => stress::run(&args),
+        Some(Command::Bench(args)) => bench::run(&args),
+        Some(Command::Export(args)) => export::run(&args),
         Some(Command::Devices(args)) => devices::run(&args),
     };
     ExitCode::from(code)

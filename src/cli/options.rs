@@ -78,6 +78,11 @@ impl PictureOptions {
         Effects::requested(scene, settings, &self.effects)
     }
 
+    /// The size that `--res` asks for.
+    pub(super) fn resolution(&self) -> Option<(u32, u32)> {
+        self.res
+    }
+
     /// Applies `--res`.
     pub(super) fn resize(&self, scene: &mut Scene) {
         if let Some((width, height)) = self.res {

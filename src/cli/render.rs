@@ -41,6 +41,9 @@ pub(super) struct Args {
     /// Write the same as JSON; `-` is standard error
     #[arg(long, value_name = "FILE")]
     stats_json: Option<PathBuf>,
+    /// Leave the rays out of the statistics: counting them takes time of its own
+    #[arg(long)]
+    no_ray_counts: bool,
     /// How progress is shown on standard error
     #[arg(long, value_enum, default_value_t = Style::Auto)]
     progress: Style,
@@ -115,7 +118,7 @@ fn render_one(args: &Args, mut loaded: Loaded, gpu: Option<&Gpu>, open_time: Dur
 
     let mut engine = Engine::new(backend, scene, &settings, &effects)?;
     let wants_stats = args.stats || args.stats_json.is_some();
-    if wants_stats {
+    if wants_stats && !args.no_ray_counts {
         engine.count_rays();
     }
     let mut writer = PictureWriter::create(&target, format, scene.width, scene.height)?;
@@ -147,7 +150,7 @@ fn render_one(args: &Args, mut loaded: Loaded, gpu: Option<&Gpu>, open_time: Dur
         settings,
         effects,
         precision: gpu.map(|_| selection),
-        rays: engine.rays(),
+        rays: engine.rays().filter(|_| !args.no_ray_counts),
         not_finite_pixels: not_finite,
         parse_ms: ms(loaded.parse_time),
         open_ms: ms(open_time),

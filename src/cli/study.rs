@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use super::failure::{Failure, OK, OUTPUT};
+use super::failure::{Failure, OK};
+use super::files::{check_folder, command, save, save_json, seconds};
 use super::input::Loaded;
 use super::options::{DeviceOptions, PictureOptions, samples_side};
 use super::output::out;
-use crate::film::Target;
 use crate::settings::Settings;
 use crate::study::{Error, HardCases, Plan, Study, Subject, csv, html};
 
@@ -58,7 +58,6 @@ pub(super) fn run(args: &Args) -> u8 {
 }
 
 fn study(args: &Args) -> Result<(), Failure> {
-    // What cannot be written should be known before minutes of measuring.
     for path in [&args.report, &args.csv, &args.json].into_iter().flatten() {
         check_folder(path)?;
     }
@@ -122,46 +121,9 @@ fn write(args: &Args, studies: &[Study], hard_cases: Option<&HardCases>) -> Resu
         if let Some(cases) = hard_cases {
             document["hard_cases"] = serde_json::json!(cases);
         }
-        let text = serde_json::to_string_pretty(&document).map_err(|error| Failure::new(OUTPUT, error.to_string()))?;
-        save(path, &(text + "\n"))?;
+        save_json(path, &document)?;
     }
     Ok(())
-}
-
-/// The command line as it was given, with the program's plain name; arguments with blanks or quotes are quoted.
-fn command() -> String {
-    let quoted = |argument: String| {
-        let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,+:@%".contains(c);
-        if !argument.is_empty() && argument.chars().all(plain) {
-            argument
-        } else {
-            format!("'{}'", argument.replace('\'', "'\\''"))
-        }
-    };
-    let arguments = std::env::args_os().skip(1).map(|argument| quoted(argument.to_string_lossy().into_owned()));
-    std::iter::once("trueray".to_owned()).chain(arguments).collect::<Vec<_>>().join(" ")
-}
-
-fn check_folder(path: &Path) -> Result<(), Failure> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    if path.is_dir() || !folder.is_dir() {
-        let what =
-            if path.is_dir() { "that is a folder".into() } else { format!("there is no folder {}", folder.display()) };
-        return Err(Failure::new(OUTPUT, format!("cannot write {}: {what}", path.display())));
-    }
-    Ok(())
-}
-
-/// Writes a text to a file, complete or not at all, or to standard output.
-fn save(path: &Path, text: &str) -> Result<(), Failure> {
-    Ok(crate::film::save_text(&Target::from_argument(path.as_os_str()), text)?)
-}
-
-fn seconds(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(seconds) if seconds.is_finite() && seconds >= 0.0 => Ok(seconds),
-        _ => Err("expected a number of seconds, 0 or more".into()),
-    }
 }
 
 /// Rays of each case, as many as `trueray stress` asks for, or none.

@@ -28,11 +28,7 @@ impl<T: Real> Reference<T> {
     pub fn new(scene: &Scene, settings: &Settings, effects: &Effects) -> Self {
         let (scene, settings) = in_range(scene, settings);
         let camera = Camera::new(&scene, &settings);
-        Self {
-            world: World::new(&scene, &settings, effects, &camera),
-            camera,
-            quantize: settings.quantize,
-        }
+        Self { world: World::new(&scene, &settings, effects, &camera), camera, quantize: settings.quantize }
     }
 
     /// The ray of the sample in sample column `i` and sample row `j`.

@@ -148,9 +148,7 @@ fn list_values(accel: &Acceleration, grid_offsets: u32) -> ListValues {
     };
     match &accel.grid {
         None => screen,
-        Some(grid) => {
-            ListValues { grid_low: grid.low, grid_per_unit: grid.per_unit, grid_cells: grid.cells, ..screen }
-        }
+        Some(grid) => ListValues { grid_low: grid.low, grid_per_unit: grid.per_unit, grid_cells: grid.cells, ..screen },
     }
 }
 

@@ -355,7 +355,18 @@ impl Work {
         let bounce_groups =
             stages.bounces.as_ref().map(|(paths, advance)| [paths.bind(gpu, &all), advance.bind(gpu, &all)]);
         let resolve_group = stages.resolve.as_ref().map(|resolve| resolve.bind(gpu, &all));
-        Self { stages, tiles_group, bounce_groups, resolve_group, tiles, stage, workgroups, pixels, ray_counts, capacity }
+        Self {
+            stages,
+            tiles_group,
+            bounce_groups,
+            resolve_group,
+            tiles,
+            stage,
+            workgroups,
+            pixels,
+            ray_counts,
+            capacity,
+        }
     }
 }
 

@@ -5,6 +5,7 @@
 mod diagnostics;
 mod model;
 mod parse;
+mod write;
 
 pub use diagnostics::{Diagnostic, Omitted, Severity};
 pub use model::{Light, MAX_RESOLUTION, Names, Scene, Sphere, Window};

@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use super::random::Random;
 use super::rays;
 use crate::gpu::{Error, Gpu, Kernel, Prober, Question};
+use crate::random::Random;
 use crate::study::Sample;
 
 /// Time of one ray–ellipsoid test.

@@ -4,7 +4,6 @@ mod classes;
 mod cost;
 mod metrics;
 mod pictures;
-mod random;
 mod rays;
 mod report;
 mod special;
@@ -14,10 +13,10 @@ use std::time::Instant;
 
 use serde::Serialize;
 
+pub use crate::random::Random;
 pub use classes::{Class, classes};
 pub use cost::{Cost, cost};
 pub use metrics::{Limit, Metrics, Quantity, Target, Verdict};
-pub use random::Random;
 pub use report::table;
 pub use truth::carried;
 

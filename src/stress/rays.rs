@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::random::Random;
 use super::truth::carried;
 use crate::gpu::{Batch, ProbeRay, Surface};
+use crate::random::Random;
 
 /// Makes a batch of so many rays.
 pub(super) type Generator = fn(&mut Random, usize) -> Batch;

@@ -3,13 +3,13 @@
 use glam::DVec3;
 
 use super::metrics::Metrics;
-use super::random::Random;
 use super::rays;
 use crate::cpu::{Dd, Real};
 use crate::geometry::Ellipsoid;
 use crate::gpu::layout::ShapeValues;
 use crate::gpu::{Batch, Error, Kernel, ProbeRay, Prober, Question, RawBatch};
 use crate::precision::Tier;
+use crate::random::Random;
 use crate::scene::parse;
 
 /// Class 13: a scale of zero is an error that names its line.

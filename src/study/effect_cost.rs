@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use super::sample::Sample;
 use crate::effects::{Effect, EffectSet, Effects, Request};
 use crate::engine::{Backend, Engine, render_bands};
 use crate::gpu;
+use crate::report::Sample;
 use crate::scene::Scene;
 use crate::settings::Settings;
 

@@ -6,10 +6,10 @@ use maud::{Markup, html};
 use serde::Serialize;
 
 use super::measure::Skipped;
-use super::number::short;
-use super::svg::{Axis, Frame, drawing, px, x_axis, y_axis};
 use crate::gpu::{DeviceInfo, Error, Gpu, Kernel};
 use crate::precision::Tier;
+use crate::report::number::short;
+use crate::report::svg::{Axis, Frame, drawing, px, x_axis, y_axis};
 use crate::stress::{Cost, Row, Verdict, classes, cost, run};
 
 /// The classes of rays whose hits are counted right or wrong and whose error has a percentile.

@@ -6,7 +6,6 @@ use serde::Serialize;
 use super::contestant::{Contestant, Runner};
 use super::effect_cost::{EffectCost, effect_cost};
 use super::error::{Distance, Error, linear_colors};
-use super::sample::Sample;
 use crate::compare::Explanation;
 use crate::cpu::Reference;
 use crate::effects::{Effect, EffectSet, Effects};
@@ -14,6 +13,7 @@ use crate::engine::Backend;
 use crate::film::Picture;
 use crate::gpu::{self, DeviceInfo, Gpu};
 use crate::precision::Selection;
+use crate::report::Sample;
 use crate::scene::Scene;
 use crate::settings::Settings;
 

@@ -4,10 +4,10 @@ use maud::{Markup, html};
 
 use super::contestant::Contestant;
 use super::measure::{Point, Series, Study};
-use super::number::{ppm, short, time};
-use super::sample::Sample;
-use super::svg::{Axis, Frame, Rect, drawing, place_labels, px, spread, x_axis, y_axis};
 use crate::precision::Tier;
+use crate::report::Sample;
+use crate::report::number::{ppm, short, time};
+use crate::report::svg::{Axis, Frame, Rect, drawing, place_labels, px, spread, x_axis, y_axis};
 
 /// The colour class of a contestant.
 pub(super) fn class(contestant: Contestant) -> &'static str {

@@ -5,9 +5,8 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use super::contestant::Contestant;
 use super::hard_cases::HardCases;
 use super::measure::{Point, Series, Study};
-use super::number::{ppm, short, time};
 use super::plots;
-use super::table::caution;
+use crate::report::number::{ppm, short, time};
 use crate::settings::{Sampling, Settings};
 
 /// The page with all `studies` and the hard cases, where they were measured; `command` is what made them.
@@ -19,7 +18,7 @@ pub fn html(studies: &[Study], hard_cases: Option<&HardCases>, command: &str) ->
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 title { "What accuracy costs" }
-                style { (PreEscaped(include_str!("report.css"))) }
+                style { (PreEscaped(crate::report::STYLE)) }
             }
             body {
                 h1 { "What accuracy costs" }
@@ -199,7 +198,7 @@ fn table(series: &Series) -> Markup {
                 td { (point.samples) }
                 td { (time(point.wall.median())) }
                 td { (short(point.wall.min())) " … " (short(point.wall.max())) }
-                @if clock { td { (cell(point.on_device.as_ref().map(super::Sample::median))) } }
+                @if clock { td { (cell(point.on_device.as_ref().map(crate::report::Sample::median))) } }
                 td { (point.error.differing) }
                 td { (point.unexplained) }
                 @if varied { td { (distance.differing) } }
@@ -207,7 +206,7 @@ fn table(series: &Series) -> Markup {
                 td { (short(distance.mean_level)) }
                 td { (short(distance.rms_level)) }
                 td { (cell(distance.rms_linear)) }
-                td.words { (caution(&point.wall)) @if point.not_finite > 0 { " " (point.not_finite) " pixels not finite" } }
+                td.words { (point.wall.caution()) @if point.not_finite > 0 { " " (point.not_finite) " pixels not finite" } }
             }
         }
     };

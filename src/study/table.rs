@@ -3,8 +3,9 @@
 use std::fmt::Write as _;
 
 use super::measure::{Point, Series, Study};
-use super::number::{short, time};
-use super::sample::Sample;
+use crate::report::Sample;
+use crate::report::csv::record;
+use crate::report::number::{short, time};
 
 impl Study {
     /// Tables for people.
@@ -43,19 +44,6 @@ impl Study {
     }
 }
 
-/// Runs that differ by more than this part of their median deserve a word of caution.
-const WIDE: f64 = 0.5;
-
-/// What can be trusted of a sample, in a word for the last column; empty where all is well.
-pub(super) fn caution(sample: &Sample) -> String {
-    match sample.outliers() {
-        0 if sample.spread() > WIDE => "wide spread".into(),
-        0 => String::new(),
-        1 => "1 outlier".into(),
-        count => format!("{count} outliers"),
-    }
-}
-
 impl Series {
     fn report(&self) -> String {
         let mut text = format!(
@@ -86,7 +74,7 @@ impl Series {
                 distance.differing,
                 distance.max_level,
                 short(distance.rms_level),
-                caution(wall)
+                wall.caution()
             );
         }
         text
@@ -129,14 +117,14 @@ pub const COLUMNS: [&str; 29] = [
 /// All points of all studies as CSV (RFC 4180) with a line of column names; times in ms, errors in levels or linear
 /// intensity, the single runs separated by blanks.
 pub fn csv(studies: &[Study]) -> String {
-    let mut text = line(&COLUMNS.map(str::to_owned));
+    let mut text = record(&COLUMNS.map(str::to_owned));
     for study in studies {
         let (device, driver) =
             study.device.as_ref().map_or_else(Default::default, |info| (info.name.clone(), info.driver.clone()));
         let head = [study.scene.clone(), study.width.to_string(), study.height.to_string(), device, driver];
         for (name, series) in [("precision", &study.precision), ("depth", &study.depth), ("samples", &study.samples)] {
             for point in &series.points {
-                text += &line(&[&head[..], &fields(name, series, point)].concat());
+                text += &record(&[&head[..], &fields(name, series, point)].concat());
             }
         }
         for variant in &study.effect_cost.variants {
@@ -149,7 +137,7 @@ pub fn csv(studies: &[Study]) -> String {
             fields.extend(times(&variant.render));
             fields.extend(std::iter::repeat_n(String::new(), 13));
             fields.extend([variant.same_picture.to_string(), runs(&variant.render)]);
-            text += &line(&[&head[..], &fields].concat());
+            text += &record(&[&head[..], &fields].concat());
         }
     }
     text
@@ -193,16 +181,4 @@ fn fields(name: &str, series: &Series, point: &Point) -> Vec<String> {
         runs(&point.wall),
     ]);
     fields
-}
-
-/// One record; fields with separators or quotes are quoted.
-fn line(fields: &[String]) -> String {
-    let quoted = |field: &String| {
-        if field.contains([',', '"', '\n', '\r']) {
-            format!("\"{}\"", field.replace('"', "\"\""))
-        } else {
-            field.clone()
-        }
-    };
-    fields.iter().map(quoted).collect::<Vec<_>>().join(",") + "\n"
 }

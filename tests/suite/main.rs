@@ -7,9 +7,11 @@
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "the test harness shows it where a test fails")]
 #![allow(missing_docs, reason = "test names say what they test")]
 
+mod bench;
 mod cli;
 mod compare;
 mod effects;
+mod export;
 mod film;
 mod keys;
 mod oracle;

@@ -5,6 +5,8 @@ use std::fmt::Write;
 use proptest::prelude::*;
 use trueray::scene::{Diagnostic, MAX_RESOLUTION, Parsed, Scene, Severity, Window, parse};
 
+use crate::support::scene_files;
+
 /// Everything that has no default, in lines 1 to 6.
 const REQUIRED: &str = "NEAR 1\nLEFT -1\nRIGHT 1\nBOTTOM -1\nTOP 1\nRES 4 3\n";
 
@@ -621,5 +623,18 @@ proptest! {
     #[test]
     fn what_counts_as_a_number_is_what_std_takes(token in "[-+.eE0-9]{1,8}") {
         prop_assert_eq!(number(&token).map(f64::to_bits), number_of_std(&token).map(f64::to_bits));
+    }
+}
+
+#[test]
+fn scenes_survive_being_written() {
+    let glass = format!(
+        "{REQUIRED}SPHERE g 0.1 1e-300 -1e300 -2 3 4 1.5 0 0 1 1 0.9 -0.1 0.5 0.75 1.33\nOUTPUT p.ppm\nLIGHT l 1 2 3 0 0 1"
+    );
+    let parsed = read(&glass).scene.unwrap();
+    assert_eq!(read(parsed.to_string()).scene.unwrap(), parsed);
+    for file in scene_files(&["basic", "effects", "hard", "show"]) {
+        let scene = crate::support::scene(&file);
+        assert_eq!(read(scene.to_string()).scene.unwrap(), scene, "{}", file.display());
     }
 }

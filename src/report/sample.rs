@@ -2,6 +2,9 @@
 
 use serde::Serialize;
 
+/// Runs that differ by more than this part of their median deserve a word of caution.
+const WIDE: f64 = 0.5;
+
 /// Times of several runs, in ms.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Sample {
@@ -62,5 +65,15 @@ impl Sample {
         let (low, high) = (self.quantile(0.25), self.quantile(0.75));
         let reach = 1.5 * (high - low);
         self.runs.iter().filter(|&&run| run < low - reach || run > high + reach).count()
+    }
+
+    /// What can be trusted of the runs, in a word for the last column of a table; empty where all is well.
+    pub(crate) fn caution(&self) -> String {
+        match self.outliers() {
+            0 if self.spread() > WIDE => "wide spread".into(),
+            0 => String::new(),
+            1 => "1 outlier".into(),
+            count => format!("{count} outliers"),
+        }
     }
 }

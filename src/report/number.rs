@@ -1,7 +1,7 @@
 //! Numbers as people read them.
 
 /// `x` with three significant digits, without an exponent where it is short enough.
-pub(super) fn short(x: f64) -> String {
+pub(crate) fn short(x: f64) -> String {
     if x == 0.0 {
         return "0".into();
     }
@@ -17,11 +17,11 @@ pub(super) fn short(x: f64) -> String {
 }
 
 /// A time in ms with its unit.
-pub(super) fn time(ms: f64) -> String {
+pub(crate) fn time(ms: f64) -> String {
     if ms >= 1000.0 { format!("{} s", short(ms / 1000.0)) } else { format!("{} ms", short(ms)) }
 }
 
 /// `count` of `total` as a share, in parts per million.
-pub(super) fn ppm(count: u64, total: u64) -> f64 {
+pub(crate) fn ppm(count: u64, total: u64) -> f64 {
     count as f64 * 1e6 / total.max(1) as f64
 }

@@ -5,13 +5,13 @@ use maud::{Markup, html};
 use super::number::short;
 
 /// A coordinate for an attribute.
-pub(super) fn px(x: f64) -> String {
+pub(crate) fn px(x: f64) -> String {
     format!("{x:.1}")
 }
 
 /// Where values lie along one direction of a plot.
 #[derive(Debug, Clone)]
-pub(super) struct Axis {
+pub(crate) struct Axis {
     low: f64,
     high: f64,
     from: f64,
@@ -21,7 +21,7 @@ pub(super) struct Axis {
 
 impl Axis {
     /// A logarithmic axis over the positive ones of `values`, rounded outwards, from `from` to `to`.
-    pub(super) fn logarithmic(values: impl Iterator<Item = f64>, from: f64, to: f64) -> Self {
+    pub(crate) fn logarithmic(values: impl Iterator<Item = f64>, from: f64, to: f64) -> Self {
         let (low, high) = values
             .filter(|value| *value > 0.0 && value.is_finite())
             .fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
@@ -31,13 +31,13 @@ impl Axis {
     }
 
     /// A linear axis from 0 over `values`.
-    pub(super) fn from_zero(values: impl Iterator<Item = f64>, from: f64, to: f64) -> Self {
+    pub(crate) fn from_zero(values: impl Iterator<Item = f64>, from: f64, to: f64) -> Self {
         let high = values.filter(|value| value.is_finite()).fold(0.0, f64::max);
         Self { low: 0.0, high: if high > 0.0 { high * 1.05 } else { 1.0 }, from, to, logarithmic: false }
     }
 
     /// Where `value` lies, kept within the axis.
-    pub(super) fn place(&self, value: f64) -> f64 {
+    pub(crate) fn place(&self, value: f64) -> f64 {
         let part = if self.logarithmic {
             (value.max(self.low) / self.low).ln() / (self.high / self.low).ln()
         } else {
@@ -47,7 +47,7 @@ impl Axis {
     }
 
     /// Places and labels of the ticks.
-    pub(super) fn ticks(&self) -> Vec<(f64, String)> {
+    pub(crate) fn ticks(&self) -> Vec<(f64, String)> {
         let mut values = Vec::new();
         if self.logarithmic {
             let mut value = self.low;
@@ -100,22 +100,22 @@ fn step_below(value: f64) -> f64 {
 
 /// The rectangle that the values of a plot lie in.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Frame {
-    pub(super) left: f64,
-    pub(super) right: f64,
-    pub(super) top: f64,
-    pub(super) bottom: f64,
+pub(crate) struct Frame {
+    pub(crate) left: f64,
+    pub(crate) right: f64,
+    pub(crate) top: f64,
+    pub(crate) bottom: f64,
 }
 
 /// A drawing of this size whose meaning `label` says in words.
-pub(super) fn drawing(width: f64, height: f64, label: &str, content: &Markup) -> Markup {
+pub(crate) fn drawing(width: f64, height: f64, label: &str, content: &Markup) -> Markup {
     html! {
         svg viewBox=(format!("0 0 {width:.0} {height:.0}")) role="img" aria-label=(label) { (content) }
     }
 }
 
 /// Grid lines and labels of a horizontal axis below the frame, and its title.
-pub(super) fn x_axis(frame: &Frame, ticks: &[(f64, String)], title: &str) -> Markup {
+pub(crate) fn x_axis(frame: &Frame, ticks: &[(f64, String)], title: &str) -> Markup {
     html! {
         @for (x, label) in ticks {
             line.grid x1=(px(*x)) x2=(px(*x)) y1=(px(frame.top)) y2=(px(frame.bottom)) {}
@@ -127,7 +127,7 @@ pub(super) fn x_axis(frame: &Frame, ticks: &[(f64, String)], title: &str) -> Mar
 }
 
 /// Grid lines and labels of a vertical axis left of the frame; its title stands above the frame.
-pub(super) fn y_axis(frame: &Frame, ticks: &[(f64, String)], title: &str) -> Markup {
+pub(crate) fn y_axis(frame: &Frame, ticks: &[(f64, String)], title: &str) -> Markup {
     html! {
         @for (y, label) in ticks {
             line.grid x1=(px(frame.left)) x2=(px(frame.right)) y1=(px(*y)) y2=(px(*y)) {}
@@ -140,7 +140,7 @@ pub(super) fn y_axis(frame: &Frame, ticks: &[(f64, String)], title: &str) -> Mar
 
 /// Moves places apart until neighbours have at least `gap` between them, keeping their order and staying within
 /// `low`…`high` where they fit.
-pub(super) fn spread(places: &[f64], gap: f64, low: f64, high: f64) -> Vec<f64> {
+pub(crate) fn spread(places: &[f64], gap: f64, low: f64, high: f64) -> Vec<f64> {
     let mut order: Vec<usize> = (0..places.len()).collect();
     order.sort_by(|a, b| places[*a].total_cmp(&places[*b]).then(a.cmp(b)));
     let mut moved = places.to_vec();
@@ -159,7 +159,7 @@ pub(super) fn spread(places: &[f64], gap: f64, low: f64, high: f64) -> Vec<f64> 
 
 /// A rectangle: left, top, right, bottom.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Rect(pub(super) [f64; 4]);
+pub(crate) struct Rect(pub(crate) [f64; 4]);
 
 impl Rect {
     fn overlaps(&self, other: &Self) -> bool {
@@ -175,7 +175,7 @@ impl Rect {
 
 /// Where the labels of `marks` go, `widths` wide, each as left end and base line: beside, above or below the mark, wherever
 /// it meets no mark and no label before it and stays within `bounds`.
-pub(super) fn place_labels(marks: &[Rect], widths: &[f64], bounds: Rect) -> Vec<(f64, f64)> {
+pub(crate) fn place_labels(marks: &[Rect], widths: &[f64], bounds: Rect) -> Vec<(f64, f64)> {
     const HEIGHT: f64 = 17.0;
     let mut taken = marks.to_vec();
     let mut places = Vec::new();

@@ -1,0 +1,149 @@
+//! The report: one HTML file that needs nothing else.
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use super::measure::{Bench, FamilyResult, Measured, SceneResult};
+use super::plots;
+use super::stages::STAGES;
+use crate::engine::Rays;
+use crate::report::STYLE;
+use crate::report::number::{short, time};
+
+/// The page with all measurements; `command` is what made them.
+pub fn html(bench: &Bench, command: &str) -> String {
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { "How fast" }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                h1 { "How fast" }
+                p.sub { "Time of a picture over the size of its scene, measured by " code { (command) } }
+                (facts(bench))
+                @for family in &bench.families { (section(family)) }
+                h2 { "How this was measured" }
+                (method(bench))
+            }
+        }
+    };
+    page.into_string()
+}
+
+fn facts(bench: &Bench) -> Markup {
+    html! {
+        dl {
+            dt { "Device" }
+            dd { (bench.device_name()) }
+            dt { "CPU" }
+            dd { "the reference in " code { "f64" } ", " (bench.cpu_threads) " threads" }
+            dt { "Picture" }
+            dd { "greatest depth " (bench.settings.max_depth) ", " (bench.settings.samples.pow(2)) " samples a pixel" }
+            dt { "Runs" }
+            dd { (bench.runs) " of each scene and renderer, at most " (time(bench.seconds * 1e3)) " together" }
+        }
+    }
+}
+
+fn section(family: &FamilyResult) -> Markup {
+    let measured = family.scenes.iter().any(|scene| !scene.measured.is_empty());
+    html! {
+        h2 { (family.name) }
+        p { "Scenes: " (family.summary) "." }
+        ul {
+            @for growth in &family.growth { li { (growth.report()) "." } }
+        }
+        @if measured && family.scenes.len() > 1 {
+            div.pair {
+                figure { (plots::times(family)) }
+                figure { (plots::rays(family)) }
+            }
+        }
+        (table(family))
+    }
+}
+
+fn table(family: &FamilyResult) -> Markup {
+    let columns = STAGES.len() + 7;
+    html! {
+        div.wide {
+            table {
+                thead {
+                    tr {
+                        th { (family.axis.name()) }
+                        th { "renderer" }
+                        th { "picture" br; "median" }
+                        th { "min … max" br; "ms" }
+                        @for (name, _) in STAGES { th { (name) br; "ms" } }
+                        th { "rays" }
+                        th { "million" br; "rays/s" }
+                        th { "pixels that" br; "differ" }
+                        th { }
+                    }
+                }
+                tbody {
+                    @for scene in &family.scenes {
+                        @for measured in &scene.measured { (row(scene, measured)) }
+                        @for skipped in &scene.skipped {
+                            tr {
+                                td { (scene.size) }
+                                td { (skipped.name) }
+                                td.words colspan=(columns - 1) { "skipped: " (skipped.reason) }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn row(scene: &SceneResult, measured: &Measured) -> Markup {
+    let Measured { renderer, picture, stages, rays, rays_per_second } = measured;
+    let Rays { primary, shadow, reflection } = rays;
+    let tier = scene.tier.filter(|_| *renderer == super::Renderer::Device);
+    html! {
+        tr {
+            td { (scene.size) }
+            td class=(plots::class(*renderer)) { (renderer.name()) @if let Some(tier) = tier { ", " (tier) } }
+            td { (time(picture.median())) }
+            td { (short(picture.min())) " … " (short(picture.max())) }
+            @for stage in stages { td { (short(stage.times.median())) } }
+            td { (primary + shadow + reflection) }
+            td { (short(rays_per_second / 1e6)) }
+            td { (scene.differing.map_or_else(|| "–".to_owned(), |count| count.to_string())) }
+            td.words { (picture.caution()) }
+        }
+    }
+}
+
+fn method(bench: &Bench) -> Markup {
+    html! {
+        ul {
+            li {
+                "The scenes are built in and the same on every machine; " code { "trueray bench --write FOLDER" }
+                " writes them as scene files."
+            }
+            li {
+                "Each renderer warmed up, the device also to count its rays, then came " (bench.runs) " pictures that count, device \
+                 and CPU in turn, so that a slow moment of the machine meets both alike. Every picture starts from the scene."
+            }
+            li {
+                "The time of a picture is wall-clock time from the scene to rows of pixels in memory, without compiling, which \
+                 further pictures do not repeat. Stages are medians, each by itself, so they need not add up."
+            }
+            li {
+                "A renderer is skipped where its runs would exceed the time budget: by the time of its first picture, or, \
+                 without one, as its times have grown so far."
+            }
+            li {
+                "Growth is the least-squares slope of log time over log size. Rays per second are all rays over the median of \
+                 the stage " em { "render" } "; a device needs no eye rays where no sphere can be, the reference traces them all."
+            }
+            li { "Outliers lie more than 1.5 interquartile ranges beyond the quartiles (Tukey's fences); a spread is wide where the fastest and the slowest run differ by more than half the median." }
+        }
+    }
+}

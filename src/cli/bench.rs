@@ -1,0 +1,134 @@
+//! `trueray bench`.
+
+use std::path::{Path, PathBuf};
+
+use super::failure::{Failure, OK, OUTPUT};
+use super::files::{check_folder, command, save, save_json, seconds};
+use super::options::{DeviceOptions, PictureOptions};
+use super::output::{errln, out};
+use crate::bench::{FAMILIES, Family, Plan, Subject, bench, csv, heads, html};
+
+/// Arguments of `trueray bench`.
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// Families of scenes, separated by commas; `--list` says which there are
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = family)]
+    families: Vec<&'static Family>,
+    /// List the families and their sizes, and end
+    #[arg(long)]
+    list: bool,
+    /// Leave out scenes with more spheres
+    #[arg(long, value_name = "N", default_value_t = 1_000_000)]
+    max_spheres: usize,
+    /// Counted runs of each scene and renderer
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    runs: u32,
+    /// Time for the counted runs of one scene on one renderer, in seconds; what would take longer is skipped
+    #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = seconds)]
+    seconds: f64,
+    /// Leave out the CPU reference
+    #[arg(long)]
+    no_cpu: bool,
+    /// Write the scenes as scene files into a folder, for other renderers, and end
+    #[arg(long, value_name = "FOLDER")]
+    write: Option<PathBuf>,
+    /// Write a report with plots, one HTML file that needs nothing else
+    #[arg(long, value_name = "FILE")]
+    report: Option<PathBuf>,
+    /// Write every scene and run as CSV; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Write everything as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    #[command(flatten)]
+    picture: PictureOptions,
+    #[command(flatten)]
+    device: DeviceOptions,
+}
+
+pub(super) fn run(args: &Args) -> u8 {
+    match run_bench(args) {
+        Ok(()) => OK,
+        Err(failure) => failure.report(),
+    }
+}
+
+fn run_bench(args: &Args) -> Result<(), Failure> {
+    let families = if args.families.is_empty() { FAMILIES.iter().collect() } else { args.families.clone() };
+    if args.list {
+        list(&families);
+        return Ok(());
+    }
+    if let Some(folder) = &args.write {
+        return write_scenes(args, &families, folder);
+    }
+    for path in [&args.report, &args.csv, &args.json].into_iter().flatten() {
+        check_folder(path)?;
+    }
+    let gpu = args.device.open()?;
+    let settings = args.picture.settings();
+    let subject = Subject {
+        gpu: gpu.as_ref(),
+        settings: &settings,
+        resolution: args.picture.resolution(),
+        effects: &|scene| args.picture.effects(scene, &settings),
+        selection: &|scene, effects| args.device.selection(gpu.as_ref(), scene, effects),
+    };
+    let plan = Plan {
+        families,
+        max_spheres: args.max_spheres,
+        runs: args.runs as usize,
+        seconds: args.seconds,
+        cpu: !args.no_cpu,
+    };
+    let table_on_stdout = ![&args.csv, &args.json].into_iter().flatten().any(|path| path == Path::new("-"));
+    let show = |text: &str| {
+        if table_on_stdout {
+            out!("{text}");
+        }
+    };
+    show(&heads());
+    let bench = bench(&subject, &plan, |family, scene| show(&scene.report(family)))?;
+    show(&format!("\n{}\n{}\n", bench.growth_report(), bench.head()));
+    if let Some(path) = &args.report {
+        save(path, &html(&bench, &command()))?;
+    }
+    if let Some(path) = &args.csv {
+        save(path, &csv(&bench))?;
+    }
+    if let Some(path) = &args.json {
+        save_json(path, &serde_json::json!({ "command": command(), "bench": bench }))?;
+    }
+    Ok(())
+}
+
+fn list(families: &[&Family]) {
+    for family in families {
+        let sizes: Vec<_> = family.sizes.iter().map(ToString::to_string).collect();
+        out!("{:<12} {}\n{:<12} {}: {}\n", family.name, family.summary, "", family.axis.name(), sizes.join(", "));
+    }
+}
+
+/// Writes the scenes that would be measured.
+fn write_scenes(args: &Args, families: &[&Family], folder: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder)
+        .map_err(|error| Failure::new(OUTPUT, format!("cannot make the folder {}: {error}", folder.display())))?;
+    for family in families {
+        for &size in family.sizes.iter().filter(|&&size| family.spheres(size) <= args.max_spheres) {
+            let mut scene = family.scene(size);
+            args.picture.resize(&mut scene);
+            let path = folder.join(family.file_stem(size)).with_extension("txt");
+            save(&path, &scene.to_string())?;
+            errln!("{}", path.display());
+        }
+    }
+    Ok(())
+}
+
+fn family(name: &str) -> Result<&'static Family, String> {
+    Family::named(name).ok_or_else(|| {
+        let names: Vec<_> = FAMILIES.iter().map(|family| family.name).collect();
+        format!("there are {}", names.join(", "))
+    })
+}

@@ -1,0 +1,64 @@
+//! `trueray export`.
+
+use std::path::{Path, PathBuf};
+
+use super::failure::{Failure, OK, SCENE, USAGE};
+use super::files::{check_folder, save};
+use super::input::Loaded;
+use super::options::PictureOptions;
+use super::output::errln;
+use crate::effects::Effects;
+use crate::export::{Obstacle, Peer, export};
+
+/// Arguments of `trueray export`.
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// Scene file; `-` is standard input
+    #[arg(value_name = "SCENE")]
+    scene: PathBuf,
+    /// The renderer: povray (3.7) or tachyon (0.99)
+    #[arg(long, value_name = "RENDERER")]
+    to: Peer,
+    /// File for it; `-`, the default, is standard output
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    output: PathBuf,
+    #[command(flatten)]
+    picture: PictureOptions,
+}
+
+pub(super) fn run(args: &Args) -> u8 {
+    match run_export(args) {
+        Ok(()) => OK,
+        Err(failure) => failure.report(),
+    }
+}
+
+fn run_export(args: &Args) -> Result<(), Failure> {
+    if args.output != Path::new("-") {
+        check_folder(&args.output)?;
+    }
+    let mut loaded = Loaded::read(&args.scene, false)?;
+    args.picture.resize(&mut loaded.scene);
+    let (scene, settings) = (&loaded.scene, args.picture.settings());
+    let effects = args.picture.effects(scene, &settings);
+    if effects != Effects::of(scene, &settings) {
+        return Err(Failure::new(USAGE, "a scene is exported with what it calls for: leave --effects out"));
+    }
+    let export =
+        export(scene, &settings, &effects, args.to).map_err(|obstacles| refusal(args.to, &loaded, &obstacles))?;
+    for warning in &export.warnings {
+        errln!("trueray: {}: warning: {warning}", loaded.name);
+    }
+    if loaded.is_scene_file(&args.output) {
+        return Err(Failure::new(super::failure::OUTPUT, "the export would overwrite its own scene file"));
+    }
+    save(&args.output, &export.text)
+}
+
+/// Names everything that stands in the way; what the settings ask for is a matter of usage.
+fn refusal(peer: Peer, loaded: &Loaded, obstacles: &[Obstacle]) -> Failure {
+    let in_scene = obstacles.iter().any(|obstacle| matches!(obstacle, Obstacle::Scene(_)));
+    let list: String = obstacles.iter().map(|obstacle| format!("\n  {obstacle}")).collect();
+    let code = if in_scene { SCENE } else { USAGE };
+    Failure::new(code, format!("{}: {peer} cannot express this scene:{list}", loaded.name))
+}
