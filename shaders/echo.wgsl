@@ -23,14 +23,13 @@ fn echo_bits(x: u32) {
 @compute @workgroup_size(1)
 fn echo_layout() {
     echo3(params.background);
-    echo(params.near);
-    echo3(params.ambient);
     echo(params.primary_t_min);
+    echo3(params.ambient);
     echo(params.shadow_t_min);
     echo(params.reflection_t_min);
     echo(params.quantize_bias);
-    echo(params.near_low);
     echo(params.light_slack);
+    echo_bits(params.window_rows);
     echo3(vec3r(params.grid_low));
     echo_bits(params.screen_shift);
     echo3(vec3r(params.grid_per_unit));
@@ -60,6 +59,6 @@ fn echo_layout() {
         echo3(lights[i].position);
         echo3(lights[i].intensity);
     }
-    echo(columns[params.sphere_count]);
-    echo(rows[params.sphere_count]);
+    echo3(window[params.sphere_count].xyz);
+    echo3(window[params.window_rows + params.sphere_count].xyz);
 }

@@ -23,10 +23,9 @@ pub(super) struct Packed {
     pub(super) materials: Vec<u8>,
     /// One per light.
     pub(super) lights: Vec<u8>,
-    /// x of each sample column on the image plane, on to the end of the last tile, and then what rounding took from each.
-    pub(super) columns: Vec<u8>,
-    /// y of each sample row on the image plane, likewise.
-    pub(super) rows: Vec<u8>,
+    /// What each sample column and then each sample row gives to its rays, on to the end of the last tile, and then what
+    /// rounding took from each.
+    pub(super) window: Vec<u8>,
     /// The lists of spheres: all offsets, then all entries.
     pub(super) lists: Vec<u32>,
     /// Six faces a light with lists.
@@ -78,17 +77,18 @@ fn pack<L: Layout>(
         Secondary::Epsilon { .. } => (0..ellipsoids.len() as u32).collect(),
     };
     let shapes = shape_values(&ellipsoids, indices, on(Effect::Ellipsoids));
-    let columns: Vec<f64> = (0..scene.width.next_multiple_of(TILE) * settings.samples).map(|i| camera.x(i)).collect();
-    let rows: Vec<f64> = (0..scene.height.next_multiple_of(TILE) * settings.samples).map(|j| camera.y(j)).collect();
+    let [columns, rows] = [scene.width, scene.height].map(|size| size.next_multiple_of(TILE) * settings.samples);
+    let window = || (0..columns).map(|i| camera.column(i)).chain((0..rows).map(|j| camera.row(j)));
+    let window_low = with_low.then(|| window().map(residual::<L>)).into_iter().flatten();
 
     let params = ParamValues {
         background: scene.background,
-        near: camera.near(),
         ambient: scene.ambient,
         primary_t_min: if on(Effect::Shells) { NEAR_T_MIN } else { 0.0 },
         shadow_t_min: settings.secondary.shadow_t_min(),
         reflection_t_min: settings.secondary.reflection_t_min(),
         quantize_bias: settings.quantize.bias(),
+        window_rows: columns,
         lists: list_values(accel, grid_offsets),
         sphere_count: scene.spheres.len() as u32,
         light_count: scene.lights.len() as u32,
@@ -96,10 +96,6 @@ fn pack<L: Layout>(
     };
     // Without the effect the kernel leaves out the way into object space.
     let scale = |ellipsoid: &Ellipsoid| if on(Effect::Ellipsoids) { ellipsoid.scale } else { DVec3::ONE };
-    let reals = |values: &[f64]| {
-        let low = values.iter().filter(|_| with_low).map(|&x| L::residual(x));
-        bytes(values.iter().copied().chain(low).map(L::real))
-    };
     let low = || Low {
         shapes: bytes(shapes.iter().map(|s| L::shape(&low_shape::<L>(s)))),
         lights: bytes(scene.lights.iter().map(|l| L::light(&low_light::<L>(l)))),
@@ -109,8 +105,7 @@ fn pack<L: Layout>(
         shapes: bytes(shapes.iter().map(L::shape)),
         materials: bytes(scene.spheres.iter().zip(&ellipsoids).map(|(s, e)| L::material(s, scale(e)))),
         lights: bytes(scene.lights.iter().map(L::light)),
-        columns: reals(&columns),
-        rows: reals(&rows),
+        window: bytes(window().chain(window_low).map(|v| v.extend(0.0).to_array().map(L::real))),
         lists,
         faces: bytes(accel.lights.faces.iter().flatten().map(|face| L::face(face, lights_base))),
         low: with_low.then(low),

@@ -157,7 +157,7 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
         common.extend([(13, Read), (14, Uniform)]);
     }
     let mut tiles = common.clone();
-    tiles.extend([(4, Read), (5, Read), (6, Read)]);
+    tiles.extend([(4, Read), (6, Read)]);
     let tiles = stage(gpu, &module, RENDER_TILES, &constants, &tiles)?;
     let bounces = if specialisation.has_paths() {
         let paths = stage(gpu, &module, TRACE_PATHS, &constants, &common)?;

@@ -334,8 +334,7 @@ impl Work {
             (1, shapes(&packed.shapes)),
             (2, filled(&packed.materials, storage)),
             (3, lights(&packed.lights)),
-            (4, filled(&packed.columns, storage)),
-            (5, filled(&packed.rows, storage)),
+            (4, filled(&packed.window, storage)),
             (11, empty(paths, storage)),
             (13, filled(bytemuck::cast_slice(&packed.lists), storage)),
             (14, fixed(&packed.faces, 6 * MAX_LISTED_LIGHTS, packed.face_size)),
@@ -375,8 +374,7 @@ fn check_fits(gpu: &Gpu, packed: &Packed) -> Result<(), Error> {
     let sizes = [
         ("spheres", packed.materials.len().max(packed.shapes.len())),
         ("lights", packed.lights.len()),
-        ("columns", packed.columns.len()),
-        ("rows", packed.rows.len()),
+        ("columns and rows", packed.window.len()),
         ("lists", packed.lists.len() * 4),
     ];
     let limit = gpu.info.max_storage_binding.min(gpu.info.max_buffer);
