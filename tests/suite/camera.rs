@@ -61,7 +61,7 @@ fn reference(scene: &Scene, settings: &Settings) -> Picture {
 }
 
 fn differing(a: &Picture, b: &Picture) -> u64 {
-    Difference::between(a, b).unwrap().over_0
+    Difference::between(a, b).unwrap().differing.over_0
 }
 
 #[test]
