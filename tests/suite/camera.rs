@@ -119,22 +119,25 @@ fn world_and_eye_turned_alike_show_the_same_picture() {
     assert_eq!((right, up), (DVec3::NEG_Y, DVec3::X));
 }
 
-/// Views from around the world of [`world`], and from behind.
-fn views() -> Vec<View> {
+/// Views from around the world of [`world`], and from behind, where it has been moved.
+fn views(offset: DVec3) -> Vec<View> {
     let target = DVec3::new(0.0, 0.0, -5.0);
     let places = [[0.3, 0.7, 2.0], [-4.1, 2.3, -1.7], [5.2, 1.1, -9.3], [0.1, 6.3, -5.2], [1.7, 0.4, -14.0]];
     let ups = [[0.0, 1.0, 0.0], [0.4, 1.0, -0.3], [1.0, 0.2, 0.1], [0.0, 0.0, -1.0], [-0.2, -1.0, 0.0]];
-    places.iter().zip(ups).map(|(&eye, up)| View::new(eye.into(), Some(target), up.into()).unwrap()).collect()
+    let view = |(&eye, up): (&[f64; 3], [f64; 3])| {
+        View::new(DVec3::from(eye) + offset, Some(target + offset), up.into()).unwrap()
+    };
+    places.iter().zip(ups).map(view).collect()
 }
 
 #[test]
 fn every_tier_shows_what_the_reference_does_from_anywhere() {
     let Some(gpu) = gpu("every_tier_shows_what_the_reference_does_from_anywhere") else { return };
     let far = DVec3::new(1e6, -1e6, 1e6);
-    for view in views() {
-        for offset in [DVec3::ZERO, far] {
+    for offset in [DVec3::ZERO, far] {
+        for view in views(offset) {
             let scene = moved(&world(), offset);
-            let settings = with(View { eye: view.eye + offset, ..view });
+            let settings = with(view);
             let auto = Effects::of(&scene, &settings);
             let all = Effects::requested(&scene, &settings, &Request::Exactly(EffectSet::ALL));
             let exact = Reference::<f64>::new(&scene, &settings, &auto);
@@ -156,8 +159,7 @@ fn every_tier_shows_what_the_reference_does_from_anywhere() {
 /// The judge must not explain everything: a view that differs by half a pixel is not explained.
 #[test]
 fn a_slightly_other_view_is_not_explained() {
-    let settings = with(views()[1]);
-    let other = with(View { eye: settings.view.eye + DVec3::new(0.02, 0.0, 0.0), ..settings.view });
+    let (settings, other) = (with(views(DVec3::ZERO)[1]), with(views(DVec3::new(0.02, 0.0, 0.0))[1]));
     let scene = world();
     let exact = Reference::<f64>::new(&scene, &settings, &Effects::of(&scene, &settings));
     let (expected, shown) = (reference(&scene, &settings), reference(&scene, &other));
@@ -272,7 +274,7 @@ fn trueray<S: AsRef<OsStr>>(args: impl IntoIterator<Item = S>) -> std::process::
 
 #[test]
 fn the_command_line_moves_the_camera() {
-    let file = crate::support::scene_files(&["basic"]).remove(0);
+    let file = crate::support::root().join("scenes/basic/one-sphere.txt");
     let folder = std::env::temp_dir().join(format!("trueray-camera-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
     let render = |name: &str, options: &[&str]| {
@@ -284,8 +286,8 @@ fn the_command_line_moves_the_camera() {
         std::fs::read(output).unwrap()
     };
     let plain = render("plain.ppm", &[]);
-    assert_eq!(render("same.ppm", &["--eye", "0,0,0", "--look-at", "0,0,-3", "--up", "0,2,0"]), plain);
-    assert_ne!(render("other.ppm", &["--eye", "-0.5,0.25,0.5", "--look-at", "-0.5,0,-9"]), plain);
+    assert!(render("same.ppm", &["--eye", "0,0,0", "--look-at", "0,0,-3", "--up", "0,2,0"]) == plain);
+    assert!(render("other.ppm", &["--eye", "-0.5,0.25,0.5", "--look-at", "-0.5,0,-9"]) != plain);
     std::fs::remove_dir_all(&folder).unwrap();
 
     let refused = |options: &[&str], what: &str| {
