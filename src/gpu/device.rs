@@ -1,5 +1,6 @@
 //! Finding and opening a Vulkan device.
 
+use std::collections::HashMap;
 use std::fmt;
 use std::str::FromStr;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -7,6 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use serde::Serialize;
 
 use super::error::Error;
+use super::pipeline::{Specialisation, Stages, compile};
 use super::selftest::SelfTest;
 use super::shader::{Kernel, Module};
 use crate::precision::Tier;
@@ -123,7 +125,12 @@ pub struct Gpu {
     /// Whether host and device share memory, so that a storage buffer can be mapped.
     pub(super) mappable: bool,
     failure: Arc<Mutex<Option<String>>>,
+    /// Compiled kernels that are used again; `None` where every renderer compiles its own.
+    kept: Option<Mutex<HashMap<Specialisation, Arc<Stages>>>>,
 }
+
+/// So many compiled pictures are kept; one more drops them all.
+const MAX_KEPT: usize = 64;
 
 /// All Vulkan devices, in the driver's order.
 pub fn list() -> Result<Vec<DeviceInfo>, Error> {
@@ -183,7 +190,30 @@ impl Gpu {
         let slot = Arc::clone(&failure);
         device.set_device_lost_callback(move |_, message| note(&slot, message));
         let mappable = features.contains(wgpu::Features::MAPPABLE_PRIMARY_BUFFERS);
-        Ok(Self { info, device, queue, mappable, failure })
+        Ok(Self { info, device, queue, mappable, failure, kept: None })
+    }
+
+    /// From now on renderers share the kernels that they compile: for whoever renders many pictures and measures no
+    /// compilation.
+    #[must_use]
+    pub fn keeping_kernels(self) -> Self {
+        Self { kept: Some(Mutex::default()), ..self }
+    }
+
+    /// The kernels of a picture, and whether another picture has used them before.
+    pub(super) fn stages(&self, specialisation: &Specialisation) -> Result<(Arc<Stages>, bool), Error> {
+        let kept = || self.kept.as_ref().map(|kept| kept.lock().unwrap_or_else(PoisonError::into_inner));
+        if let Some(stages) = kept().and_then(|kept| kept.get(specialisation).cloned()) {
+            return Ok((stages, true));
+        }
+        let stages = Arc::new(compile(self, specialisation)?);
+        if let Some(mut kept) = kept() {
+            if kept.len() >= MAX_KEPT {
+                kept.clear();
+            }
+            kept.insert(*specialisation, Arc::clone(&stages));
+        }
+        Ok((stages, false))
     }
 
     /// The tiers that `auto` chooses from, cheapest first. Software devices calculate in `f64` at little more than the price
