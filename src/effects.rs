@@ -162,6 +162,21 @@ impl FromStr for Request {
     }
 }
 
+impl fmt::Display for Request {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Auto => f.write_str("auto"),
+            Self::Exactly(EffectSet::ALL) => f.write_str("all"),
+            Self::Exactly(set) => set.fmt(f),
+            Self::Changed(changes) => {
+                let words: Vec<_> =
+                    changes.iter().map(|(effect, on)| format!("{}{effect}", if *on { '+' } else { '-' })).collect();
+                f.write_str(&words.join(","))
+            }
+        }
+    }
+}
+
 fn effect_named(name: &str) -> Result<Effect, String> {
     Effect::ALL.into_iter().find(|effect| effect.name() == name).ok_or_else(|| {
         let names: Vec<_> = Effect::ALL.into_iter().map(Effect::name).collect();

@@ -57,6 +57,12 @@ impl FromStr for Request {
     }
 }
 
+impl fmt::Display for Request {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.0.map_or("auto", Tier::name))
+    }
+}
+
 /// What a tier covers; beyond it the tier promises nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Promise {

@@ -103,6 +103,21 @@ impl Settings {
     /// The greatest accepted `samples`: 256 samples a pixel.
     pub const MAX_SAMPLES: u32 = 16;
 
+    /// The side of the grid of `count` samples.
+    ///
+    /// # Errors
+    ///
+    /// Where `count` is no square number of a grid that is accepted.
+    pub fn samples_side(count: u32) -> Result<u32, String> {
+        let greatest = Self::MAX_SAMPLES * Self::MAX_SAMPLES;
+        let side = count.isqrt();
+        if (1..=greatest).contains(&count) && side * side == count {
+            Ok(side)
+        } else {
+            Err(format!("expected a square number from 1 to {greatest}: 1, 4, 9, 16, 25, …"))
+        }
+    }
+
     /// The convention that the official pictures pin.
     pub fn classic() -> Self {
         Self {

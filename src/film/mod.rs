@@ -15,7 +15,7 @@ use std::str::FromStr;
 
 pub use problem::{Place, Problem, ReadError, SamplePosition, Warning};
 pub use read::{Leniency, Reading, decode, read_picture};
-pub use write::{OutputError, PictureWriter, Target, save_text};
+pub use write::{OutputError, PictureWriter, Target, encode_png, save_text};
 
 /// The greatest width and the greatest height of a [`Picture`], in pixels.
 ///

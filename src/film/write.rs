@@ -340,7 +340,7 @@ impl Encoder {
                 write!(output, "P3\n{width} {height}\n255\n")?;
                 Ok(Self::P3(Plain::new(output, width)))
             }
-            Format::Png => Ok(Self::Png(Box::new(png_stream(output, width, height)?))),
+            Format::Png => Ok(Self::Png(Box::new(png_writer(output, width, height)?.into_stream_writer()?))),
         }
     }
 
@@ -360,12 +360,26 @@ impl Encoder {
     }
 }
 
-fn png_stream(output: Output, width: u32, height: u32) -> Result<StreamWriter<'static, Output>, png::EncodingError> {
+/// The bytes of the PNG file that [`PictureWriter`] writes of the same picture, whose rows `rgb` holds.
+///
+/// # Errors
+/// More or fewer samples than the picture has.
+pub fn encode_png(width: u32, height: u32, rgb: &[u8]) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let mut writer = png_writer(&mut bytes, width, height)?;
+    let mut stream = writer.stream_writer()?;
+    stream.write_all(rgb)?;
+    stream.finish()?;
+    writer.finish()?;
+    Ok(bytes)
+}
+
+fn png_writer<W: Write>(output: W, width: u32, height: u32) -> Result<png::Writer<W>, png::EncodingError> {
     let mut encoder = png::Encoder::new(output, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Fast);
-    encoder.write_header()?.into_stream_writer()
+    encoder.write_header()
 }
 
 /// Samples in a line of P3: five pixels, at most 59 characters where the format allows 70.
