@@ -26,3 +26,5 @@ pub mod stress;
 pub mod study;
 pub mod tiles;
 pub mod view;
+#[cfg(feature = "view")]
+pub mod viewer;

@@ -15,6 +15,8 @@ mod render;
 mod stats;
 mod stress;
 mod study;
+#[cfg(feature = "view")]
+mod view;
 
 use std::process::ExitCode;
 
@@ -57,6 +59,9 @@ enum Command {
     Bench(bench::Args),
     /// Write a scene for POV-Ray or Tachyon
     Export(export::Args),
+    /// Show a scene live in the browser
+    #[cfg(feature = "view")]
+    View(view::Args),
     /// List the Vulkan devices
     Devices(devices::Args),
 }
@@ -86,6 +91,8 @@ pub fn run() -> ExitCode {
         Some(Command::Stress(args)) => stress::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),
         Some(Command::Export(args)) => export::run(&args),
+        #[cfg(feature = "view")]
+        Some(Command::View(args)) => view::run(&args),
         Some(Command::Devices(args)) => devices::run(&args),
     };
     ExitCode::from(code)

@@ -11,6 +11,8 @@ use crate::precision::{self, Selection, Tier};
 use crate::scene::Scene;
 use crate::settings::{Quantize, Sampling, Secondary, Settings, Specular};
 use crate::view::View;
+#[cfg(feature = "view")]
+use crate::viewer::{Pose, Range, Wishes};
 
 /// What decides the picture besides the scene.
 #[derive(Debug, Args)]
@@ -96,6 +98,16 @@ impl PictureOptions {
         Ok(settings)
     }
 
+    /// What a page of `trueray view` starts with.
+    #[cfg(feature = "view")]
+    pub(super) fn wishes(&self, scene: &Scene, precision: precision::Request) -> Result<Wishes, Failure> {
+        let settings = self.settings()?;
+        let CameraOptions { eye, look_at, up } = self.camera;
+        let ahead = look_at.unwrap_or(eye + Pose::of_file(Range::of(scene)).look_at);
+        let pose = (settings.view != View::FILE).then_some(Pose { eye, look_at: ahead, up });
+        Ok(Wishes { pose, settings, effects: self.effects.clone(), precision, res: self.res })
+    }
+
     pub(super) fn effects(&self, scene: &Scene, settings: &Settings) -> Effects {
         Effects::requested(scene, settings, &self.effects)
     }
@@ -115,7 +127,7 @@ impl PictureOptions {
 }
 
 /// Which device renders.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub(super) struct DeviceOptions {
     /// auto, cpu, gpu (never falls back), an index of `trueray devices`, part of a device's name or driver, or its PCI id
     #[arg(long, value_name = "DEVICE", default_value = "auto")]
@@ -199,11 +211,7 @@ fn secondary(text: &str) -> Result<Secondary, String> {
 
 /// The side of the grid of so many samples.
 pub(super) fn samples_side(text: &str) -> Result<u32, String> {
-    let greatest = Settings::MAX_SAMPLES * Settings::MAX_SAMPLES;
-    let wrong = || format!("expected a square number from 1 to {greatest}: 1, 4, 9, 16, 25, …");
-    let count: u32 = text.parse().map_err(|_| wrong())?;
-    let side = count.isqrt();
-    if (1..=greatest).contains(&count) && side * side == count { Ok(side) } else { Err(wrong()) }
+    Settings::samples_side(text.parse().unwrap_or(0))
 }
 
 /// Three coordinates.

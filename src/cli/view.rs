@@ -1,0 +1,72 @@
+//! `trueray view`.
+
+use std::net::SocketAddr;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::failure::{DEVICE_LOST, Failure, OK, OUTPUT, USAGE};
+use super::input::Loaded;
+use super::options::{DeviceOptions, PictureOptions};
+use super::output::{errln, outln};
+use crate::gpu;
+use crate::viewer::{Server, Studio, Watched, watch};
+
+/// Arguments of `trueray view`.
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// Scene file; it is read again whenever it changes
+    #[arg(value_name = "SCENE")]
+    scene: PathBuf,
+    #[command(flatten)]
+    picture: PictureOptions,
+    #[command(flatten)]
+    device: DeviceOptions,
+    /// Where the page is served; port 0 is any free one
+    #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:0")]
+    listen: SocketAddr,
+    /// Print errors only, and the address
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+pub(super) fn run(args: &Args) -> u8 {
+    match view(args) {
+        Ok(()) => OK,
+        Err(failure) => failure.report(),
+    }
+}
+
+fn view(args: &Args) -> Result<(), Failure> {
+    if args.scene.as_os_str() == "-" {
+        return Err(Failure::new(USAGE, "a scene that is to be watched must be a file"));
+    }
+    args.picture.settings()?;
+    // Opening a device takes longer than reading most scenes: both at once. A page may come before either.
+    let server = Server::bind(args.listen)
+        .map_err(|error| Failure::new(OUTPUT, format!("cannot listen at {}: {error}", args.listen)))?;
+    let (gpu, loaded) = std::thread::scope(|scope| {
+        let opening = scope.spawn(|| args.device.open());
+        let loaded = Loaded::read(&args.scene, args.quiet);
+        (opening.join(), loaded)
+    });
+    let loaded = loaded?;
+    let gpu = gpu.map_err(|_| Failure::new(DEVICE_LOST, "opening the device failed"))??;
+    if !args.listen.ip().is_loopback() && !args.quiet {
+        errln!("trueray: the page is served to the network, without encryption");
+    }
+    outln!("{}", server.url());
+
+    let wishes = args.picture.wishes(&loaded.scene, args.device.precision)?;
+    let studio = Arc::new(Studio::new(Watched::new(&args.scene, loaded.scene), wishes));
+    let no_thread = |error: std::io::Error| Failure::new(OUTPUT, format!("cannot start a thread: {error}"));
+    watch(Arc::clone(&studio.watched), Arc::clone(&studio.bell), Arc::clone(&studio.quit)).map_err(no_thread)?;
+    let painter = Arc::clone(&studio);
+    let device = args.device.clone();
+    let mut opened = Some(gpu);
+    let mut open = move || -> Result<_, gpu::Error> {
+        let gpu = opened.take().map_or_else(|| device.open(), Ok)?;
+        Ok(gpu.map(|gpu| Arc::new(gpu.keeping_kernels())))
+    };
+    std::thread::Builder::new().name("studio".into()).spawn(move || painter.run(&mut open)).map_err(no_thread)?;
+    server.serve(studio).map_err(|error| Failure::new(OUTPUT, error.to_string()))
+}

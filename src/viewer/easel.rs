@@ -1,0 +1,477 @@
+//! The picture of one page on its way: coarse first, then finer, then the very picture that `trueray render` gives.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use serde_json::json;
+
+use super::canvas::Canvas;
+use super::desk::Desk;
+use super::measure::Measurement;
+use super::protocol::PICTURE_FILE;
+use super::wishes::Wishes;
+use crate::cpu::seen_through;
+use crate::effects::Effects;
+use crate::engine::{Backend, Engine, Times};
+use crate::film::encode_png;
+use crate::gpu;
+use crate::gpu::Gpu;
+use crate::precision::{Selection, Tier};
+use crate::scene::Scene;
+use crate::settings::Settings;
+use crate::tiles::TILE;
+
+/// A frame should take no longer while the eye moves, so that 30 of them fit into a second with their way to the page.
+const FRAME: f64 = 26.0;
+/// A slice of a finer picture should take about this long, in ms: so long may new input wait.
+const SLICE: f64 = 20.0;
+/// A picture that takes longer, in ms, shows a coarser one first.
+const PATIENCE: f64 = 200.0;
+/// Greatest step of a coarse picture.
+const MAX_STEP: u32 = 64;
+/// Bytes of a slice at the most, unless a single row of tiles takes more.
+const MAX_SLICE_BYTES: usize = 2 << 20;
+/// So many lines of a report are shown.
+const GREATEST_SIDE: u32 = 8192;
+
+/// Measured speed of pictures like the last ones.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pace {
+    /// From wishes to a renderer, in ms.
+    prepare: f64,
+    /// A sample, in ms.
+    sample: f64,
+}
+
+impl Default for Pace {
+    /// Before anything is measured the first picture is a coarse one.
+    fn default() -> Self {
+        Self { prepare: 2.0, sample: 2e-3 }
+    }
+}
+
+impl Pace {
+    fn learn(&mut self, prepare: f64, render: f64, samples: f64) {
+        let mean = |old: f64, new: f64| if new > old { new.midpoint(old) } else { old.mul_add(0.7, new * 0.3) };
+        self.prepare = mean(self.prepare, prepare);
+        // Few samples say more of the way to the device and back than of themselves.
+        if samples >= 4096.0 {
+            self.sample = mean(self.sample, render / samples);
+        }
+    }
+
+    /// Time of a picture with this step, in ms.
+    pub(super) fn forecast(&self, size: (u32, u32), step: u32) -> f64 {
+        self.prepare + self.sample * f64::from(size.0.div_ceil(step)) * f64::from(size.1.div_ceil(step))
+    }
+
+    /// The least step whose picture takes no longer than `limit`, in ms.
+    pub(super) fn step(&self, size: (u32, u32), limit: f64) -> u32 {
+        // What is spent on preparing cannot be saved.
+        let limit = limit.max(self.prepare + 8.0);
+        (1..MAX_STEP).find(|&step| self.forecast(size, step) <= limit).unwrap_or(MAX_STEP)
+    }
+}
+
+/// What every picture of a page has in common until the page wishes another.
+#[derive(Debug, Clone)]
+struct Subject {
+    version: u64,
+    wishes: Wishes,
+    settings: Settings,
+    effects: Effects,
+    selection: Selection,
+    size: (u32, u32),
+    /// Steps and samples of the pictures to come, last one first.
+    to_come: Vec<(u32, u32)>,
+    /// Time that all this took, in ms; counted with the first picture.
+    took: f64,
+}
+
+/// One picture on its way.
+#[derive(Debug)]
+struct Pass<'g> {
+    engine: Engine<'g>,
+    step: u32,
+    samples: u32,
+    size: (u32, u32),
+    /// The first one after a wish, which is shown at once and not given up for a newer wish.
+    first: bool,
+    next_row: u32,
+    /// Rows so far, where they are shown at once.
+    rgb: Vec<u8>,
+    took: Duration,
+}
+
+/// The times that the page shows, in ms.
+#[derive(Debug, Clone, Copy, Default)]
+struct Shown {
+    step: u32,
+    samples: u32,
+    frame: f64,
+    times: Times,
+    not_finite: u64,
+}
+
+/// A page's picture and what it takes to paint it.
+#[derive(Debug)]
+pub(super) struct Easel<'g> {
+    pub(super) desk: Arc<Desk>,
+    gpu: Option<&'g Gpu>,
+    canvas: Canvas,
+    pub(super) pace: Pace,
+    subject: Option<Subject>,
+    pass: Option<Pass<'g>>,
+    shown: Shown,
+    not_finite: u64,
+    measurement: Option<Measurement>,
+    /// Why there is no picture of the newest wish.
+    trouble: Option<String>,
+    /// Words about the scene and the device that the page has not been told.
+    tell: bool,
+}
+
+/// What pages are told beside their pictures.
+#[derive(Debug)]
+pub(super) struct Setting<'s> {
+    pub(super) scene: &'s mut Scene,
+    pub(super) scene_file: &'s str,
+    pub(super) error: Option<&'s super::watch::Reading>,
+    /// Pages that want something.
+    pub(super) busy: usize,
+    /// Pixels that a page may have.
+    pub(super) pixels: u64,
+    pub(super) pages: usize,
+}
+
+impl<'g> Easel<'g> {
+    pub(super) fn new(desk: Arc<Desk>, gpu: Option<&'g Gpu>, pace: Pace) -> Self {
+        Self {
+            desk,
+            gpu,
+            canvas: Canvas::new((1, 1)),
+            pace,
+            subject: None,
+            pass: None,
+            shown: Shown::default(),
+            not_finite: 0,
+            measurement: None,
+            trouble: None,
+            tell: true,
+        }
+    }
+
+    /// The scene has changed, or what is known of its file.
+    pub(super) fn scene_changed(&mut self, replaced: bool) {
+        self.tell = true;
+        if replaced {
+            (self.subject, self.pass, self.measurement) = (None, None, None);
+        }
+    }
+
+    /// Pixels that this page keeps.
+    pub(super) fn pixels(&self) -> u64 {
+        u64::from(self.canvas.size().0) * u64::from(self.canvas.size().1)
+    }
+
+    fn is_behind(&self) -> bool {
+        self.subject.as_ref().is_none_or(|subject| subject.version != self.desk.version())
+    }
+
+    /// Whether there is something to do now.
+    pub(super) fn wants_a_turn(&self) -> bool {
+        let unfinished = || self.pass.is_some() || self.subject.as_ref().is_some_and(|s| !s.to_come.is_empty());
+        let wanted = self.is_behind() || unfinished() || self.tell || self.measurement.is_some();
+        (wanted || self.desk.has_errands()) && self.desk.is_open() && !self.desk.is_closed()
+    }
+
+    /// Does a little: some tens of milliseconds, unless kernels are compiled. Only a lost device is an error.
+    pub(super) fn turn(&mut self, setting: &mut Setting) -> Result<(), gpu::Error> {
+        match self.try_turn(setting) {
+            Err(gpu::Error::NoDevice(why)) => {
+                self.trouble = Some(why);
+                (self.pass, self.measurement) = (None, None);
+                if let Some(subject) = &mut self.subject {
+                    subject.to_come.clear();
+                }
+                self.send_state(setting);
+                Ok(())
+            }
+            result => result,
+        }
+    }
+
+    fn try_turn(&mut self, setting: &mut Setting) -> Result<(), gpu::Error> {
+        if self.is_behind() && !self.pass.as_ref().is_some_and(|pass| pass.first) {
+            self.begin(setting);
+        }
+        self.run_errands(setting);
+        if self.pass.is_none() {
+            self.next_pass(setting)?;
+        }
+        if self.pass.is_some() {
+            return self.paint(setting);
+        }
+        if self.tell && self.desk.is_open() {
+            self.send_state(setting);
+        }
+        self.measure(setting)
+    }
+
+    /// Looks at the newest wishes.
+    fn begin(&mut self, setting: &mut Setting) {
+        let start = Instant::now();
+        let (version, wishes) = self.desk.wishes();
+        let settings = wishes.settings();
+        let asked = wishes.size(setting.scene);
+        let size = fitted(asked, setting.pixels);
+        let effects = Effects::requested(setting.scene, &settings, &wishes.effects);
+        let ladder = self.gpu.map_or(&Tier::ALL[..], Gpu::ladder);
+        let selection = Selection::of(&settings.view.relative(setting.scene), &effects, wishes.precision, ladder);
+        if self.canvas.size() != size {
+            self.canvas = Canvas::new(size);
+        }
+        let limit = FRAME / setting.busy.max(1) as f64;
+        let samples = settings.samples;
+        let mut to_come = vec![(1, samples)];
+        if samples > 1 {
+            to_come.push((1, 1));
+        }
+        let mut step = self.pace.step(size, limit);
+        let mut coarse = Vec::new();
+        while step > 1 {
+            coarse.push((step, 1));
+            // Each step takes a fraction of the time of the next.
+            step = (1..=step / 4).rev().find(|_| self.pace.forecast(size, 1) > PATIENCE).unwrap_or(1);
+        }
+        to_come.extend(coarse.into_iter().rev());
+        let took = ms(start.elapsed());
+        self.subject = Some(Subject { version, wishes, settings, effects, selection, size, to_come, took });
+        (self.pass, self.measurement, self.trouble) = (None, None, None);
+    }
+
+    /// Prepares the next picture.
+    fn next_pass(&mut self, setting: &mut Setting) -> Result<(), gpu::Error> {
+        let Some(subject) = &mut self.subject else { return Ok(()) };
+        let Some((step, samples)) = subject.to_come.pop() else { return Ok(()) };
+        let start = Instant::now();
+        let settings = Settings { samples, ..subject.settings };
+        let backend = self.gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, subject.selection.tier));
+        let (engine, size) = coarse_engine(backend, setting.scene, &settings, &subject.effects, subject.size, step)?;
+        let took = start.elapsed() + Duration::from_secs_f64(subject.took / 1e3);
+        let first = subject.took > 0.0;
+        subject.took = 0.0;
+        self.not_finite = 0;
+        self.pass = Some(Pass { engine, step, samples, size, first, next_row: 0, rgb: Vec::new(), took });
+        Ok(())
+    }
+
+    /// Renders a slice, and shows it.
+    fn paint(&mut self, setting: &mut Setting) -> Result<(), gpu::Error> {
+        let Some(mut pass) = self.pass.take() else { return Ok(()) };
+        let start = Instant::now();
+        let (width, height) = pass.size;
+        let row_bytes = width as usize * 3;
+        let samples = f64::from(pass.samples * pass.samples);
+        let whole = pass.first && self.pace.forecast(pass.size, 1) < 4.0 * FRAME;
+        let row_ms = self.pace.sample * samples * f64::from(width);
+        let rows = if whole { height } else { (SLICE / row_ms).min(1e9) as u32 };
+        let rows = rows.min((MAX_SLICE_BYTES / row_bytes) as u32).next_multiple_of(TILE).max(TILE);
+        let rows = rows.min(height - pass.next_row);
+        let mut rgb = vec![0; row_bytes * rows as usize];
+        self.not_finite += pass.engine.rows(pass.next_row, &mut rgb)?;
+        let first_row = pass.next_row;
+        pass.next_row += rows;
+        pass.took += start.elapsed();
+
+        let done = pass.next_row == height;
+        if pass.step > 1 {
+            pass.rgb.append(&mut rgb);
+            if done {
+                let patch = self.canvas.coarse(pass.step, std::mem::take(&mut pass.rgb));
+                self.desk.send_bytes(patch.encode());
+            }
+        } else if let Some(patch) = self.canvas.rows(first_row, &rgb) {
+            self.desk.send_bytes(patch.encode());
+        }
+        if done {
+            self.finish(&pass, setting);
+        } else {
+            self.pass = Some(pass);
+        }
+        Ok(())
+    }
+
+    /// Learns from a picture that is complete, and tells the page.
+    fn finish(&mut self, pass: &Pass, setting: &mut Setting) {
+        let times = pass.engine.times();
+        let (width, height) = pass.size;
+        let samples = f64::from(width) * f64::from(height) * f64::from(pass.samples * pass.samples);
+        let render = times.render_ms + times.read_back_ms;
+        let frame = ms(pass.took);
+        self.pace.learn((frame - render - times.compile_ms).max(0.0), render, samples);
+        self.shown = Shown { step: pass.step, samples: pass.samples, frame, times, not_finite: self.not_finite };
+        self.send_state(setting);
+    }
+
+    /// What the page asked for besides a picture.
+    fn run_errands(&mut self, setting: &mut Setting) {
+        let finished = self.finished();
+        let (pick, save) = self.desk.with_errands(|errands| {
+            let save = errands.save && finished;
+            errands.save &= !finished;
+            if std::mem::take(&mut errands.measure) {
+                self.measurement = Some(Measurement::default());
+            }
+            if let Some(why) = errands.refusal.take() {
+                self.trouble = Some(why);
+                self.tell = true;
+            }
+            (errands.pick.take(), save)
+        });
+        if let Some(pixel) = pick {
+            self.send_pixel(pixel, setting);
+        }
+        if save {
+            let (width, height) = self.canvas.size();
+            match self.canvas.complete().map(|rgb| encode_png(width, height, rgb)) {
+                Some(Ok(file)) => {
+                    let mut message = [PICTURE_FILE, 0].map(u32::to_le_bytes).concat();
+                    message.extend(file);
+                    self.desk.send_bytes(message);
+                }
+                Some(Err(error)) => (self.trouble, self.tell) = (Some(error.to_string()), true),
+                None => {}
+            }
+        }
+    }
+
+    /// Whether the page shows the picture that `trueray render` gives.
+    fn finished(&self) -> bool {
+        let all = self.subject.as_ref().is_some_and(|subject| subject.to_come.is_empty());
+        all && self.pass.is_none() && self.canvas.complete().is_some() && !self.is_behind()
+    }
+
+    fn send_pixel(&self, (x, y): (u32, u32), setting: &mut Setting) {
+        let Some(subject) = &self.subject else { return };
+        let (width, height) = subject.size;
+        if x >= width || y >= height {
+            return;
+        }
+        let rgb = self.canvas.complete().map(|rgb| {
+            let start = (y as usize * width as usize + x as usize) * 3;
+            [rgb[start], rgb[start + 1], rgb[start + 2]]
+        });
+        let hit = with_size(setting.scene, subject.size, |scene| seen_through(scene, &subject.settings, x, y));
+        let hit = hit.map(|hit| {
+            let name = setting.scene.sphere_names.get(hit.sphere);
+            json!({ "sphere": hit.sphere, "name": name, "t": hit.t, "position": hit.position.to_array(),
+                "inside": hit.inside })
+        });
+        self.desk.send_words(json!({ "is": "pixel", "x": x, "y": y, "rgb": rgb, "hit": hit }));
+    }
+
+    /// Takes the next step of a measurement, if there is one.
+    fn measure(&mut self, setting: &mut Setting) -> Result<(), gpu::Error> {
+        let (Some(mut measurement), Some(subject)) = (self.measurement.take(), &self.subject) else { return Ok(()) };
+        let step = self.pace.step(subject.size, 3.0 * FRAME);
+        let effects = measurement.variant(&subject.effects);
+        let backend = self.gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, subject.selection.tier));
+        let (mut engine, (width, height)) =
+            coarse_engine(backend, setting.scene, &subject.settings, &effects, subject.size, step)?;
+        let mut rgb = vec![0; width as usize * height as usize * 3];
+        engine.rows(0, &mut rgb)?;
+        let times = engine.times();
+        if let Some(table) = measurement.note(times.render_ms) {
+            self.desk.send_words(json!({ "is": "costs", "effects": table, "size": [width, height] }));
+        } else {
+            self.measurement = Some(measurement);
+        }
+        Ok(())
+    }
+
+    /// Tells the page all numbers.
+    fn send_state(&mut self, setting: &mut Setting) {
+        self.tell = false;
+        let Some(subject) = &self.subject else { return };
+        let Subject { wishes, settings, effects, selection, size, .. } = subject;
+        let scene = &*setting.scene;
+        let scene_size = (scene.width, scene.height);
+        let shrunk = *size != wishes.size(scene);
+        let options = wishes.options((*size != scene_size).then_some(*size));
+        let Shown { step, samples, frame, times, not_finite } = self.shown;
+        let pose = wishes.pose.map(|pose| json!([pose.eye.to_array(), pose.look_at.to_array(), pose.up.to_array()]));
+        self.desk.send_words(json!({
+            "is": "state",
+            "version": subject.version,
+            "finished": self.finished(),
+            "size": size, "shrunk": shrunk,
+            "step": step, "samples": samples * samples, "frame_ms": frame, "times": times, "not_finite": not_finite,
+            "device": self.gpu.map_or_else(|| "the CPU reference (f64)".to_owned(), |gpu| gpu.info.to_string()),
+            "effects": effects.rows, "depth": effects.depth,
+            "tier": selection.tier, "tier_reason": selection.reason,
+            "wishes": {
+                "effects": wishes.effects.to_string(), "precision": wishes.precision.to_string(),
+                "max_depth": settings.max_depth, "spp": settings.samples * settings.samples, "settings": settings,
+                "res": wishes.res.map_or_else(String::new, |(width, height)| format!("{width}x{height}")),
+            },
+            "eye": settings.view.eye.to_array(), "pose": pose,
+            "options": options,
+            "scene": { "file": setting.scene_file, "spheres": scene.spheres.len(), "lights": scene.lights.len(),
+                "size": scene_size },
+            "error": setting.error,
+            "trouble": self.trouble,
+            "pages": setting.pages,
+        }));
+    }
+}
+
+/// A renderer whose pixels are every `step`-th column and row of the picture of `size`, with the size that it renders.
+fn coarse_engine<'g>(
+    backend: Backend<'g>,
+    scene: &mut Scene,
+    settings: &Settings,
+    effects: &Effects,
+    size: (u32, u32),
+    step: u32,
+) -> Result<(Engine<'g>, (u32, u32)), gpu::Error> {
+    with_size(scene, size, |scene| {
+        let (width, height) = (size.0.div_ceil(step), size.1.div_ceil(step));
+        let window = scene.window;
+        // The window reaches as far as its pixels, which may be beyond the picture.
+        let part = |count: u32, whole: u32| f64::from(count * step) / f64::from(whole);
+        if step > 1 {
+            scene.window.right = window.left + (window.right - window.left) * part(width, size.0);
+            scene.window.bottom = window.top - (window.top - window.bottom) * part(height, size.1);
+        }
+        (scene.width, scene.height) = (width, height);
+        let engine = Engine::new(backend, scene, settings, effects);
+        scene.window = window;
+        Ok((engine?, (width, height)))
+    })
+}
+
+/// Lets `action` see the scene with this size of its picture. A scene may be too large to be copied for that.
+fn with_size<T>(scene: &mut Scene, size: (u32, u32), action: impl FnOnce(&mut Scene) -> T) -> T {
+    let own = (scene.width, scene.height);
+    (scene.width, scene.height) = size;
+    let result = action(scene);
+    (scene.width, scene.height) = own;
+    result
+}
+
+/// `size`, halved until a page can show and keep it.
+fn fitted(size: (u32, u32), pixels: u64) -> (u32, u32) {
+    let (mut width, mut height) = (size.0.max(1), size.1.max(1));
+    while width.max(height) > GREATEST_SIDE || u64::from(width) * u64::from(height) > pixels {
+        if width.max(height) == 1 {
+            break;
+        }
+        (width, height) = (width.div_ceil(2), height.div_ceil(2));
+    }
+    (width, height)
+}
+
+fn ms(duration: Duration) -> f64 {
+    duration.as_secs_f64() * 1e3
+}

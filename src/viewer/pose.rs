@@ -1,0 +1,127 @@
+//! The eye that a page moves: orbit, flight, turn, zoom.
+
+use glam::{DQuat, DVec3};
+
+use crate::scene::Scene;
+use crate::settings::Settings;
+use crate::view::{View, ViewError};
+
+/// Coordinates that a page can reach, in world units.
+const FARTHEST: f64 = 1e15;
+/// Least angle between the view and the upward direction while turning, in radians.
+const LEAST_ANGLE: f64 = 0.02;
+
+/// Where the eye is and where it looks, in the words of `--eye`, `--look-at` and `--up`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pose {
+    /// The eye in the world.
+    pub eye: DVec3,
+    /// What it looks at, and orbits around; ≠ `eye`.
+    pub look_at: DVec3,
+    /// What is upwards.
+    pub up: DVec3,
+}
+
+/// How far away the spheres of a scene are: what the steps of a flight are measured in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Range {
+    /// From the file's eye to the middle of the spheres along the view, in world units, > 0.
+    pub distance: f64,
+}
+
+impl Range {
+    /// The range of `scene`.
+    pub fn of(scene: &Scene) -> Self {
+        let depths = scene.spheres.iter().map(|sphere| -sphere.center.z);
+        let (low, high) = depths.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), z| (l.min(z), h.max(z)));
+        let middle = low.max(0.0).midpoint(high);
+        let near = scene.window.near;
+        Self { distance: if middle.is_finite() { middle.clamp(2.0 * near, FARTHEST) } else { 2.0 * near } }
+    }
+}
+
+impl Pose {
+    /// The file's camera; it orbits around the middle of the view at the distance of the spheres.
+    pub fn of_file(range: Range) -> Self {
+        Self { eye: DVec3::ZERO, look_at: DVec3::new(0.0, 0.0, -range.distance), up: DVec3::Y }
+    }
+
+    /// Whether the picture is that of the file's camera.
+    pub fn is_of_file(&self) -> bool {
+        self.view() == Ok(View::FILE)
+    }
+
+    /// The view that the renderers know.
+    ///
+    /// # Errors
+    ///
+    /// Where there is none.
+    pub fn view(&self) -> Result<View, ViewError> {
+        View::new(self.eye, Some(self.look_at), self.up)
+    }
+
+    /// `settings` with this view; unchanged where there is none.
+    pub fn apply(&self, settings: &Settings) -> Settings {
+        Settings { view: self.view().unwrap_or(settings.view), ..*settings }
+    }
+
+    /// Moves the eye around what it looks at, `right` and `up` in radians.
+    #[must_use]
+    pub fn orbited(self, right: f64, up: f64) -> Self {
+        let arm = self.rotated(self.eye - self.look_at, right, up, -1.0);
+        self.accepted(Self { eye: self.look_at + arm, ..self })
+    }
+
+    /// Turns the view, `right` and `up` in radians.
+    #[must_use]
+    pub fn turned(self, right: f64, up: f64) -> Self {
+        let ahead = self.rotated(self.look_at - self.eye, -right, up, 1.0);
+        self.accepted(Self { look_at: self.eye + ahead, ..self })
+    }
+
+    /// Moves eye and target along the picture's axes, in parts of `range`.
+    #[must_use]
+    pub fn flown(self, right: f64, up: f64, forward: f64, range: Range) -> Self {
+        let Ok(view) = self.view() else { return self };
+        let [x, y, back] = view.axes();
+        let step = (x * right + y * up - back * forward) * range.distance;
+        self.accepted(Self { eye: self.eye + step, look_at: self.look_at + step, ..self })
+    }
+
+    /// Multiplies the distance to what it looks at by `factor`.
+    #[must_use]
+    pub fn zoomed(self, factor: f64, range: Range) -> Self {
+        let arm = self.eye - self.look_at;
+        let length = (arm.length() * factor).clamp(range.distance * 1e-4, range.distance * 1e4);
+        self.accepted(Self { eye: self.look_at + arm.normalize_or_zero() * length, ..self })
+    }
+
+    /// `arm` rotated around the upward direction and then towards (`sign` 1) or away from it.
+    fn rotated(&self, arm: DVec3, around: f64, towards: f64, sign: f64) -> DVec3 {
+        let up = self.up.normalize_or(DVec3::Y);
+        let arm = DQuat::from_axis_angle(up, around) * arm;
+        let sideways = arm.cross(up).normalize_or_zero();
+        if sideways == DVec3::ZERO {
+            return arm;
+        }
+        let angle = arm.angle_between(up);
+        let wanted = (angle - sign * towards).clamp(LEAST_ANGLE, std::f64::consts::PI - LEAST_ANGLE);
+        DQuat::from_axis_angle(sideways, angle - wanted) * arm
+    }
+
+    /// `other` where it is a view within reach, else this one.
+    fn accepted(self, other: Self) -> Self {
+        let near = |v: DVec3| v.abs().max_element() <= FARTHEST;
+        if near(other.eye) && near(other.look_at) && other.view().is_ok() { other } else { self }
+    }
+
+    /// The options of the command line for this view; empty for the file's camera.
+    pub fn options(&self) -> String {
+        if self.is_of_file() {
+            return String::new();
+        }
+        // The shortest decimals that read back as the same numbers; `=` keeps a leading minus from being an option.
+        let vector = |v: DVec3| format!("{:?},{:?},{:?}", v.x, v.y, v.z);
+        format!("--eye={} --look-at={} --up={}", vector(self.eye), vector(self.look_at), vector(self.up))
+    }
+}
