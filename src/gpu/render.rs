@@ -4,7 +4,6 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
-use wgpu::util::DeviceExt;
 
 use super::device::Gpu;
 use super::error::Error;
@@ -303,7 +302,13 @@ impl Work {
         let filled = |contents: &[u8], usage| {
             // A binding of size 0 is not allowed; the kernel never reads past the counts.
             let contents = if contents.is_empty() { &[0; 64] } else { contents };
-            device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
+            let usage = usage | wgpu::BufferUsages::COPY_DST;
+            let size = contents.len() as u64;
+            let buffer =
+                device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false });
+            // A buffer that is mapped from the start panics where the device is lost.
+            gpu.queue.write_buffer(&buffer, 0, contents);
+            buffer
         };
         let empty = |size, usage| {
             device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })

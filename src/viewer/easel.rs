@@ -31,7 +31,7 @@ const PATIENCE: f64 = 200.0;
 const MAX_STEP: u32 = 64;
 /// Bytes of a slice at the most, unless a single row of tiles takes more.
 const MAX_SLICE_BYTES: usize = 2 << 20;
-/// So many lines of a report are shown.
+/// Pixels of a page's picture on each side at the most: browsers show no larger ones everywhere.
 const GREATEST_SIDE: u32 = 8192;
 
 /// Measured speed of pictures like the last ones.
@@ -41,22 +41,30 @@ pub(super) struct Pace {
     prepare: f64,
     /// A sample, in ms.
     sample: f64,
+    /// Whether these are measured at all.
+    measured: bool,
 }
 
 impl Default for Pace {
     /// Before anything is measured the first picture is a coarse one.
     fn default() -> Self {
-        Self { prepare: 2.0, sample: 2e-3 }
+        Self { prepare: 2.0, sample: 2e-3, measured: false }
     }
 }
 
 impl Pace {
     fn learn(&mut self, prepare: f64, render: f64, samples: f64) {
-        let mean = |old: f64, new: f64| if new > old { new.midpoint(old) } else { old.mul_add(0.7, new * 0.3) };
+        let known = self.measured;
+        let mean = |old: f64, new: f64| match known {
+            false => new,
+            true if new > old => new.midpoint(old),
+            true => old.mul_add(0.7, new * 0.3),
+        };
         self.prepare = mean(self.prepare, prepare);
         // Few samples say more of the way to the device and back than of themselves.
         if samples >= 4096.0 {
             self.sample = mean(self.sample, render / samples);
+            self.measured = true;
         }
     }
 

@@ -68,14 +68,14 @@ impl Pose {
     /// Moves the eye around what it looks at, `right` and `up` in radians.
     #[must_use]
     pub fn orbited(self, right: f64, up: f64) -> Self {
-        let arm = self.rotated(self.eye - self.look_at, right, up, -1.0);
+        let arm = self.rotated(self.eye - self.look_at, right, up);
         self.accepted(Self { eye: self.look_at + arm, ..self })
     }
 
     /// Turns the view, `right` and `up` in radians.
     #[must_use]
     pub fn turned(self, right: f64, up: f64) -> Self {
-        let ahead = self.rotated(self.look_at - self.eye, -right, up, 1.0);
+        let ahead = self.rotated(self.look_at - self.eye, -right, up);
         self.accepted(Self { look_at: self.eye + ahead, ..self })
     }
 
@@ -96,8 +96,8 @@ impl Pose {
         self.accepted(Self { eye: self.look_at + arm.normalize_or_zero() * length, ..self })
     }
 
-    /// `arm` rotated around the upward direction and then towards (`sign` 1) or away from it.
-    fn rotated(&self, arm: DVec3, around: f64, towards: f64, sign: f64) -> DVec3 {
+    /// `arm` rotated around the upward direction and then towards it.
+    fn rotated(&self, arm: DVec3, around: f64, upwards: f64) -> DVec3 {
         let up = self.up.normalize_or(DVec3::Y);
         let arm = DQuat::from_axis_angle(up, around) * arm;
         let sideways = arm.cross(up).normalize_or_zero();
@@ -105,7 +105,7 @@ impl Pose {
             return arm;
         }
         let angle = arm.angle_between(up);
-        let wanted = (angle - sign * towards).clamp(LEAST_ANGLE, std::f64::consts::PI - LEAST_ANGLE);
+        let wanted = (angle - upwards).clamp(LEAST_ANGLE, std::f64::consts::PI - LEAST_ANGLE);
         DQuat::from_axis_angle(sideways, angle - wanted) * arm
     }
 

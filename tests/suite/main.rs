@@ -22,3 +22,5 @@ mod shaders;
 mod stress;
 mod study;
 mod support;
+#[cfg(feature = "view")]
+mod view;

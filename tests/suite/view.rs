@@ -1,0 +1,503 @@
+//! The live picture: what a page would see, without a browser.
+
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::sync::atomic::Ordering;
+use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use glam::DVec3;
+use serde_json::Value;
+use trueray::effects::{self, Effects};
+use trueray::engine::{Backend, Engine, render_picture};
+use trueray::gpu::{Choice, Gpu};
+use trueray::precision::{self, Selection};
+use trueray::scene::{Scene, parse};
+use trueray::settings::Settings;
+use trueray::viewer::{
+    Access, Canvas, Desk, FromPage, MAX_PAGES, MAX_UNACKNOWLEDGED, Outgoing, Patch, Pose, Range, Studio, Watched,
+    Wishes, watch,
+};
+
+use crate::support::gpu;
+
+const SCENE: &str = "NEAR 1\nLEFT -1\nRIGHT 1\nBOTTOM -1\nTOP 1\nRES 90 70\nSPHERE a 0 0 -10 2 4 2 0.5 0 0 1 1 0.9 0 50\n\
+                     SPHERE b 4 4 -10 1 2 1 0 0.5 0 1 1 0.9 0.3 50\nLIGHT l 0 0 0 0.9 0.9 0.9\nBACK 0.2 0.5 1\n\
+                     AMBIENT 0.2 0.2 0.2\n";
+
+/// Long enough for kernels to be compiled on a machine that has other things to do.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+fn scene(text: &str) -> Scene {
+    parse("scene.txt", text.as_bytes()).scene.unwrap()
+}
+
+fn wishes() -> Wishes {
+    Wishes {
+        pose: None,
+        settings: Settings::classic(),
+        effects: effects::Request::Auto,
+        precision: precision::Request::default(),
+        res: None,
+    }
+}
+
+/// A studio at work on a scene file.
+struct Work {
+    studio: Arc<Studio>,
+    thread: Option<JoinHandle<()>>,
+    folder: tempfile::TempDir,
+    /// The device in use.
+    gpu: Arc<Mutex<Option<Arc<Gpu>>>>,
+}
+
+impl Work {
+    fn new(text: &str, on_device: bool) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.txt");
+        std::fs::write(&path, text).unwrap();
+        let studio = Arc::new(Studio::new(Watched::new(&path, scene(text)), wishes()));
+        watch(Arc::clone(&studio.watched), Arc::clone(&studio.bell), Arc::clone(&studio.quit)).unwrap();
+        let gpu = Arc::new(Mutex::new(None));
+        let (painter, slot) = (Arc::clone(&studio), Arc::clone(&gpu));
+        let open = move || {
+            let gpu = if on_device { Some(Arc::new(Gpu::open(&Choice::Auto)?.keeping_kernels())) } else { None };
+            slot.lock().unwrap().clone_from(&gpu);
+            Ok(gpu)
+        };
+        let thread = Some(std::thread::spawn(move || painter.run(&mut Box::new(open))));
+        Self { studio, thread, folder, gpu }
+    }
+
+    fn page(&self) -> Page {
+        Page { desk: self.studio.sit_down().unwrap(), studio: Arc::clone(&self.studio), size: (0, 0), rgb: Vec::new() }
+    }
+
+    fn edit(&self, text: &str) {
+        std::fs::write(self.folder.path().join("scene.txt"), text).unwrap();
+    }
+}
+
+impl Drop for Work {
+    fn drop(&mut self) {
+        self.studio.quit.store(true, Ordering::Relaxed);
+        self.studio.bell.ring();
+        let ended = self.thread.take().unwrap().join();
+        assert!(ended.is_ok() || std::thread::panicking(), "the thread that renders has panicked");
+    }
+}
+
+/// What a page does: draws patches and acknowledges.
+struct Page {
+    desk: Arc<Desk>,
+    studio: Arc<Studio>,
+    size: (u32, u32),
+    rgb: Vec<u8>,
+}
+
+impl Page {
+    fn send(&self, message: &str) {
+        self.desk.receive(&serde_json::from_str(message).unwrap());
+        self.studio.bell.ring();
+    }
+
+    /// Draws the next message; words are returned.
+    fn next(&mut self) -> Option<Value> {
+        let start = Instant::now();
+        let message = loop {
+            if let Some(message) = self.desk.take() {
+                break message;
+            }
+            assert!(start.elapsed() < PATIENCE, "nothing comes");
+            std::thread::sleep(Duration::from_millis(1));
+        };
+        self.handle(message)
+    }
+
+    /// Draws a message and acknowledges it; words are returned.
+    fn handle(&mut self, message: Outgoing) -> Option<Value> {
+        let (number, words) = match message {
+            Outgoing::Bytes(bytes) => {
+                if let Some(patch) = Patch::decode(&bytes) {
+                    self.draw(&patch);
+                }
+                (u64::from(u32::from_le_bytes(bytes[4..8].try_into().unwrap())), None)
+            }
+            Outgoing::Words(words) => {
+                let words: Value = serde_json::from_str(&words).unwrap();
+                (words["number"].as_u64().unwrap(), Some(words))
+            }
+        };
+        self.send(&format!(r#"{{"do":"ack","through":{number}}}"#));
+        words
+    }
+
+    fn draw(&mut self, patch: &Patch) {
+        let (width, height) = patch.size;
+        if self.size != patch.size {
+            self.size = patch.size;
+            self.rgb = vec![0; width as usize * height as usize * 3];
+        }
+        for (part, rgb) in &patch.parts {
+            let (columns, _) = patch.sent(part);
+            for y in part.y..part.y + part.height {
+                for x in part.x..part.x + part.width {
+                    let from = ((y - part.y) / patch.step) as usize * columns + ((x - part.x) / patch.step) as usize;
+                    let to = y as usize * width as usize + x as usize;
+                    self.rgb[to * 3..][..3].copy_from_slice(&rgb[from * 3..][..3]);
+                }
+            }
+        }
+    }
+
+    /// Draws until words have the property.
+    fn until(&mut self, property: impl Fn(&Value) -> bool) -> Value {
+        let start = Instant::now();
+        loop {
+            assert!(start.elapsed() < PATIENCE, "never");
+            if let Some(words) = self.next().filter(&property) {
+                return words;
+            }
+        }
+    }
+
+    /// Draws until the full picture of the newest wishes is there.
+    fn finish(&mut self) -> Value {
+        let version = self.desk.wishes().0;
+        self.until(|words| words["finished"] == true && words["version"] == version)
+    }
+}
+
+/// What `trueray render` gives for what a page wishes.
+fn rendered(gpu: Option<&Gpu>, scene: &Scene, wishes: &Wishes) -> Vec<u8> {
+    let mut scene = scene.clone();
+    (scene.width, scene.height) = wishes.size(&scene);
+    let settings = wishes.settings();
+    let effects = Effects::requested(&scene, &settings, &wishes.effects);
+    let backend = gpu.map_or(Backend::Reference, |gpu| {
+        let relative = settings.view.relative(&scene);
+        Backend::Device(gpu, Selection::of(&relative, &effects, wishes.precision, gpu.ladder()).tier)
+    });
+    render_picture(&mut Engine::new(backend, &scene, &settings, &effects).unwrap(), &scene).unwrap().0
+}
+
+#[test]
+fn the_picture_at_rest_is_that_of_render() {
+    for on_device in [false, true] {
+        let device = if on_device { gpu("view::the_picture_at_rest_is_that_of_render") } else { None };
+        if on_device && device.is_none() {
+            continue;
+        }
+        let work = Work::new(SCENE, on_device);
+        let mut page = work.page();
+        let messages = [
+            r#"{"do":"reset"}"#,
+            r#"{"do":"orbit","right":0.4,"up":0.2}"#,
+            r#"{"do":"choose","convention":"exact","spp":4,"max_depth":2}"#,
+            r#"{"do":"fly","right":0.1,"up":-0.05,"forward":0.3}"#,
+            r#"{"do":"choose","effects":"-shadows,+shells","precision":"double","res":"61x33"}"#,
+            r#"{"do":"turn","right":0.1,"up":0.1}"#,
+            r#"{"do":"zoom","by":0.7}"#,
+            r#"{"do":"choose","res":"1x1","spp":1}"#,
+            r#"{"do":"choose","res":"2000x3"}"#,
+        ];
+        for (index, message) in messages.into_iter().enumerate() {
+            page.send(message);
+            if index > 0 || page.rgb.is_empty() {
+                page.finish();
+            }
+            let expected = rendered(device.as_deref(), &scene(SCENE), &page.desk.wishes().1);
+            assert!(page.rgb == expected, "after {message}, on the device: {on_device}");
+        }
+    }
+}
+
+#[test]
+fn the_command_line_of_a_view_renders_it() {
+    let work = Work::new(SCENE, false);
+    let mut page = work.page();
+    page.send(r#"{"do":"orbit","right":-0.7,"up":0.3}"#);
+    page.send(r#"{"do":"fly","right":0.013,"up":0.3,"forward":-0.21}"#);
+    for choice in [
+        r#"{"do":"choose","spp":9,"res":"50x41","effects":"ambient,diffuse"}"#,
+        r#"{"do":"choose","convention":"exact","effects":"auto"}"#,
+        r#"{"do":"choose","convention":"classic","precision":"double","max_depth":0,"res":"","effects":"none"}"#,
+        r#"{"do":"reset"}"#,
+    ] {
+        page.send(choice);
+        let state = page.finish();
+        let options = state["options"].as_str().unwrap();
+        let mut command = Command::new(env!("CARGO_BIN_EXE_trueray"));
+        command.current_dir(work.folder.path()).args(["render", "--device", "cpu"]);
+        let output = command.args(options.split_whitespace()).args(["scene.txt", "-o", "view.png"]).output().unwrap();
+        assert!(output.status.success(), "{options}: {}", String::from_utf8_lossy(&output.stderr));
+        page.send(r#"{"do":"save"}"#);
+        let file = loop {
+            match page.desk.take() {
+                Some(Outgoing::Bytes(bytes)) if bytes[0] == 2 => break bytes,
+                _ => std::thread::sleep(Duration::from_millis(1)),
+            }
+        };
+        let number = u32::from_le_bytes(file[4..8].try_into().unwrap());
+        page.send(&format!(r#"{{"do":"ack","through":{number}}}"#));
+        assert!(file[8..] == std::fs::read(work.folder.path().join("view.png")).unwrap(), "{options}");
+    }
+}
+
+#[test]
+fn a_page_that_does_not_read_gets_no_queue() {
+    let work = Work::new(SCENE, false);
+    let mut page = work.page();
+    let desk = Arc::clone(&page.desk);
+    for _ in 0..200 {
+        page.send(r#"{"do":"orbit","right":0.01,"up":0}"#);
+        page.send(r#"{"do":"pick","x":1,"y":1}"#);
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    let mut waiting = Vec::new();
+    while let Some(message) = desk.take() {
+        waiting.push(message);
+    }
+    // A turn that began while there was room ends with a patch, a state, a pixel and a state.
+    assert!(!waiting.is_empty() && waiting.len() <= MAX_UNACKNOWLEDGED + 3, "{} messages", waiting.len());
+    assert!(!desk.is_open());
+    for message in waiting {
+        page.handle(message);
+    }
+    page.finish();
+    assert_eq!(page.rgb, rendered(None, &scene(SCENE), &desk.wishes().1));
+}
+
+#[test]
+fn an_edited_scene_is_shown_and_an_error_keeps_the_last_picture() {
+    let work = Work::new(SCENE, false);
+    let mut page = work.page();
+    page.finish();
+    let before = page.rgb.clone();
+    work.edit(&SCENE.replace("LIGHT l", "LAMP l"));
+    let state = page.until(|words| !words["error"].is_null());
+    assert_eq!(state["error"]["line"], 9);
+    assert!(state["error"]["text"].as_str().unwrap().contains("LAMP"));
+    assert_eq!(page.rgb, before);
+    // Whoever comes now gets the last good picture and the error.
+    let mut other = work.page();
+    assert_eq!(other.finish()["error"]["line"], 9);
+    assert_eq!(other.rgb, before);
+    let edited = SCENE.replace("BACK 0.2", "BACK 0.7").replace("RES 90 70", "RES 64 48");
+    work.edit(&edited);
+    page.until(|words| words["error"].is_null() && words["finished"] == true && words["size"][0] == 64);
+    assert_eq!(page.rgb, rendered(None, &scene(&edited), &wishes()));
+    std::fs::remove_file(work.folder.path().join("scene.txt")).unwrap();
+    let state = page.until(|words| !words["error"].is_null());
+    assert!(state["error"]["text"].as_str().unwrap().contains("cannot read"));
+}
+
+#[test]
+fn a_lost_device_is_opened_again() {
+    let Some(device) = gpu("view::a_lost_device_is_opened_again") else { return };
+    let work = Work::new(SCENE, true);
+    let mut page = work.page();
+    page.finish();
+    for round in 0..3 {
+        let gpu = work.gpu.lock().unwrap().clone().unwrap();
+        gpu.destroy();
+        page.send(&format!(r#"{{"do":"orbit","right":0.{},"up":0.1}}"#, round + 1));
+        page.until(|words| words["is"] == "lost");
+        page.finish();
+        assert_eq!(page.rgb, rendered(Some(&device), &scene(SCENE), &page.desk.wishes().1));
+    }
+}
+
+#[test]
+fn pages_have_their_own_pictures_and_may_vanish() {
+    let work = Work::new(SCENE, false);
+    let mut pages: Vec<_> = (0..MAX_PAGES).map(|_| work.page()).collect();
+    assert!(work.studio.sit_down().is_none());
+    for (index, page) in pages.iter().enumerate() {
+        page.send(&format!(r#"{{"do":"orbit","right":{},"up":0}}"#, 0.1 * index as f64));
+    }
+    // Half of them go without a word, some in the midst of a picture.
+    for page in pages.drain(..MAX_PAGES / 2) {
+        page.desk.close();
+    }
+    for page in &mut pages {
+        page.finish();
+        assert_eq!(page.rgb, rendered(None, &scene(SCENE), &page.desk.wishes().1));
+    }
+    assert!(work.studio.sit_down().is_some());
+}
+
+#[test]
+fn a_huge_size_is_shown_smaller() {
+    let work = Work::new("NEAR 1\nLEFT -1\nRIGHT 1\nBOTTOM -1\nTOP 1\nRES 40 30\n", false);
+    let mut page = work.page();
+    page.send(r#"{"do":"choose","res":"16777216x16777216"}"#);
+    let state = page.finish();
+    assert_eq!(state["shrunk"], true);
+    assert!(state["options"].as_str().unwrap().contains("--res 8192x8192"), "{}", state["options"]);
+    page.send(r#"{"do":"choose","res":"0x5"}"#);
+    let state = page.until(|words| !words["trouble"].is_null());
+    assert!(state["trouble"].as_str().unwrap().contains("0x5"));
+}
+
+#[test]
+fn a_pixel_says_what_it_shows() {
+    let work = Work::new(SCENE, false);
+    let mut page = work.page();
+    page.finish();
+    page.send(r#"{"do":"pick","x":45,"y":35}"#);
+    let pixel = page.until(|words| words["is"] == "pixel");
+    assert_eq!(pixel["hit"]["name"], "a");
+    assert_eq!(pixel["hit"]["sphere"], 0);
+    // The ray of this pixel's corner goes straight ahead, and the sphere's nearest point is at z = -8.
+    assert_eq!(pixel["hit"]["t"], 8.0);
+    assert_eq!(pixel["hit"]["position"], serde_json::json!([0.0, 0.0, -8.0]));
+    let start = (35 * 90 + 45) * 3;
+    assert_eq!(pixel["rgb"], serde_json::json!(page.rgb[start..start + 3]));
+    page.send(r#"{"do":"pick","x":0,"y":0}"#);
+    assert!(page.until(|words| words["is"] == "pixel")["hit"].is_null());
+}
+
+#[test]
+fn effects_are_measured_on_demand() {
+    let work = Work::new(SCENE, false);
+    let mut page = work.page();
+    page.finish();
+    page.send(r#"{"do":"measure"}"#);
+    let costs = page.until(|words| words["is"] == "costs");
+    let costs = costs["effects"].as_array().unwrap();
+    let names: Vec<_> = costs.iter().map(|cost| cost["effect"].as_str().unwrap()).collect();
+    assert_eq!(names, effects::Effect::ALL.map(effects::Effect::name));
+    assert!(costs.iter().all(|cost| cost["with_ms"].as_f64().unwrap() > 0.0));
+}
+
+#[test]
+fn patches_hold_what_has_changed() {
+    let mut canvas = Canvas::new((40, 20));
+    let mut rgb = vec![7; 40 * 20 * 3];
+    let whole = canvas.rows(0, &rgb).unwrap();
+    assert_eq!((whole.parts.len(), whole.parts[0].1.len()), (1, rgb.len()));
+    assert_eq!(canvas.rows(0, &rgb), None);
+    rgb[(9 * 40 + 5) * 3] = 1;
+    rgb[(10 * 40 + 12) * 3 + 2] = 1;
+    let patch = canvas.rows(0, &rgb).unwrap();
+    let (part, pixels) = &patch.parts[0];
+    assert_eq!((part.x, part.y, part.width, part.height, pixels.len()), (5, 8, 8, 8, 8 * 8 * 3));
+    assert!(canvas.complete() == Some(&rgb[..]));
+    assert_eq!(canvas.coarse(8, vec![0; 5 * 3 * 3]).parts[0].1.len(), 45);
+    assert_eq!(canvas.complete(), None);
+    assert_eq!(canvas.rows(0, &rgb).unwrap().parts[0].1.len(), rgb.len());
+}
+
+#[test]
+fn patches_are_read_back_and_torn_ones_are_not() {
+    let mut canvas = Canvas::new((17, 9));
+    let patch = canvas.rows(0, &(0..17 * 9 * 3).map(|i| i as u8).collect::<Vec<_>>()).unwrap();
+    let bytes = patch.encode();
+    assert_eq!(Patch::decode(&bytes), Some(patch));
+    for length in 0..bytes.len() {
+        assert_eq!(Patch::decode(&bytes[..length]), None);
+    }
+}
+
+#[test]
+fn the_eye_moves_as_the_page_asks() {
+    let range = Range { distance: 10.0 };
+    let pose = Pose::of_file(range);
+    assert!(pose.is_of_file() && pose.options().is_empty());
+    let close = |a: DVec3, b: DVec3| (a - b).length() < 1e-9;
+    // To the right around the middle by a quarter: the eye is to the right of it and looks to the left.
+    let right = pose.orbited(std::f64::consts::FRAC_PI_2, 0.0);
+    assert!(close(right.eye, DVec3::new(10.0, 0.0, -10.0)), "{right:?}");
+    assert!(close(pose.orbited(0.0, 0.5).eye, DVec3::new(0.0, 10.0 * 0.5_f64.sin(), -10.0 + 10.0 * 0.5_f64.cos())));
+    assert!(close(pose.turned(std::f64::consts::FRAC_PI_2, 0.0).look_at, DVec3::new(10.0, 0.0, 0.0)));
+    assert!(pose.turned(0.0, 0.5).look_at.y > 0.0);
+    assert!(close(pose.flown(0.1, 0.2, 0.3, range).eye, DVec3::new(1.0, 2.0, -3.0)));
+    assert!(close(pose.zoomed(0.5, range).eye, DVec3::new(0.0, 0.0, -5.0)));
+    // Never through the poles, and never where there is no view.
+    let mut pose = pose;
+    for _ in 0..100 {
+        pose = pose.orbited(0.3, 0.3).turned(0.2, 0.4).zoomed(0.5, range).zoomed(f64::NAN, range);
+        pose = pose.flown(f64::INFINITY, 0.0, 0.0, range).flown(1e300, 0.0, 0.0, range);
+        assert!(pose.view().is_ok() && pose.eye.is_finite());
+    }
+}
+
+#[test]
+fn only_the_page_itself_comes_in() {
+    let access = Access { token: "abc".into(), loopback: true };
+    let permits = |token, host, origin| access.permits(token, Some(host), origin, true);
+    assert!(permits("abc", "127.0.0.1:8000", Some("http://127.0.0.1:8000")));
+    assert!(permits("abc", "[::1]:8000", Some("http://[::1]:8000")));
+    assert!(permits("abc", "localhost:8000", Some("http://localhost:8000")));
+    assert!(!permits("abd", "127.0.0.1:8000", Some("http://127.0.0.1:8000")));
+    assert!(!permits("", "127.0.0.1:8000", Some("http://127.0.0.1:8000")));
+    assert!(!permits("abc", "127.0.0.1:8000", Some("http://127.0.0.1:9000")));
+    assert!(!permits("abc", "127.0.0.1:8000", Some("https://elsewhere.example")));
+    assert!(!permits("abc", "127.0.0.1:8000", None));
+    // A name that resolves to this machine.
+    assert!(!permits("abc", "elsewhere.example:8000", Some("http://elsewhere.example:8000")));
+    assert!(access.permits("abc", Some("127.0.0.1:8000"), None, false));
+    assert!(!access.permits("abc", None, None, false));
+}
+
+#[test]
+fn messages_that_are_none_are_refused() {
+    for text in [r#"{"do":"fly","right":1}"#, r#"{"do":"dance"}"#, "[]", ""] {
+        assert!(serde_json::from_str::<FromPage>(text).is_err(), "{text}");
+    }
+}
+
+/// The program, ended when dropped.
+struct Program(Child);
+
+impl Drop for Program {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+fn request(address: &str, path: &str, headers: &str) -> String {
+    let mut stream = TcpStream::connect(address).unwrap();
+    write!(stream, "GET {path} HTTP/1.1\r\nHost: {address}\r\n{headers}\r\n").unwrap();
+    stream.set_read_timeout(Some(PATIENCE)).unwrap();
+    let mut answer = [0; 1024];
+    let count = stream.read(&mut answer).unwrap();
+    String::from_utf8_lossy(&answer[..count]).into_owned()
+}
+
+#[test]
+fn the_program_serves_its_page_to_those_who_know_the_address() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("scene.txt"), SCENE).unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_trueray"));
+    command.args(["view", "--device", "cpu", "scene.txt"]).current_dir(folder.path()).stdout(Stdio::piped());
+    let mut program = Program(command.spawn().unwrap());
+    let mut line = String::new();
+    let output = program.0.stdout.as_mut().unwrap();
+    std::io::BufRead::read_line(&mut std::io::BufReader::new(output), &mut line).unwrap();
+    let (address, path) = line.trim().strip_prefix("http://").unwrap().split_once('/').unwrap();
+    assert!(address.starts_with("127.0.0.1:"));
+    let page = request(address, &format!("/{path}"), "");
+    assert!(page.starts_with("HTTP/1.1 200") && page.contains("default-src 'none'"), "{page}");
+    assert!(request(address, "/", "").starts_with("HTTP/1.1 404"));
+    assert!(request(address, "/0123456789abcdef0123456789abcdef/", "").starts_with("HTTP/1.1 403"));
+    let upgrade = "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n\
+                   Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n";
+    let foreign = format!("{upgrade}Origin: http://elsewhere.example\r\n");
+    assert!(request(address, &format!("/{path}ws"), &foreign).starts_with("HTTP/1.1 403"));
+    let own = format!("{upgrade}Origin: http://{address}\r\n");
+    assert!(request(address, &format!("/{path}ws"), &own).starts_with("HTTP/1.1 101"));
+}
+
+#[test]
+fn the_page_asks_nothing_of_other_hosts() {
+    let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("src/viewer/page.html")).unwrap();
+    for word in ["http://", "https://", "//cdn", "@import", "src=\"", "url("] {
+        assert!(!page.contains(word), "{word}");
+    }
+}
