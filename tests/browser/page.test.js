@@ -66,7 +66,7 @@ test('keys, mouse and wheel move the eye, and R brings it back', async () => {
   await page.waitForFunction(() => window.trueray.state.eye[2] < -0.2);
   await page.keyboard.up('KeyW');
   await page.waitForTimeout(200);
-  let state = await settled(page, 'state.eye[2] < -0.2');
+  let state = await settled(page, (state) => state.eye[2] < -0.2);
   assertSame(await pixels(page), rendered(place.path, 'scene.txt', options(state)));
 
   const box = await page.locator('#picture').boundingBox();
@@ -76,17 +76,17 @@ test('keys, mouse and wheel move the eye, and R brings it back', async () => {
   await page.mouse.move(middle[0] - 40, middle[1] + 20, { steps: 5 });
   await page.mouse.up();
   await page.waitForTimeout(200);
-  state = await settled(page, 'state.eye[0] > 0.5 && state.eye[1] > 0.2');
+  state = await settled(page, (state) => state.eye[0] > 0.5 && state.eye[1] > 0.2);
   assertSame(await pixels(page), rendered(place.path, 'scene.txt', options(state)));
 
   const { version } = state;
   await page.mouse.wheel(0, -100);
-  state = await settled(page, `state.version > ${version}`);
+  state = await settled(page, (state) => state.version > version);
   assertSame(await pixels(page), rendered(place.path, 'scene.txt', options(state)));
 
   await page.locator('#picture').focus();
   await page.keyboard.press('KeyR');
-  state = await settled(page, `state.options === ''`);
+  state = await settled(page, (state) => state.options === '');
   assert.deepEqual(state.eye, first.eye);
   assertSame(await pixels(page), rendered(place.path, 'scene.txt'));
 });
@@ -94,7 +94,7 @@ test('keys, mouse and wheel move the eye, and R brings it back', async () => {
 test('toggles change the picture as the options of render do', async () => {
   await settled(page);
   await page.locator('#effect-shadows').click();
-  let state = await settled(page, `!state.effects.find((row) => row.effect === 'shadows').on`);
+  let state = await settled(page, (state) => !state.effects.find((row) => row.effect === 'shadows').on);
   assert.match(state.options, /--effects=/);
   assertSame(await pixels(page), rendered(place.path, 'scene.txt', options(state)));
   assert.match(await page.locator('label.effect', { hasText: 'shadows' }).textContent(), /forced off/);
@@ -105,7 +105,7 @@ test('toggles change the picture as the options of render do', async () => {
   await page.locator('#depth').fill('1');
   await page.locator('#res').fill('150x90');
   await page.keyboard.press('Enter');
-  state = await settled(page, `state.size[0] === 150 && state.wishes.max_depth === 1 && state.samples === 4`);
+  state = await settled(page, (state) => state.size[0] === 150 && state.wishes.max_depth === 1 && state.samples === 4);
   for (const option of ['--convention exact', '--precision double', '--spp 4', '--max-depth 1', '--res 150x90']) {
     assert.ok(state.options.includes(option), `${option} in ${state.options}`);
   }
@@ -166,7 +166,7 @@ test('pages have their own views, and a page that goes away harms nobody', async
   const { eye } = await page.evaluate(() => window.trueray.state);
   assert.deepEqual(eye, [0, 0, 0]);
   await page.locator('#effect-diffuse').click();
-  const state = await settled(page, `!state.effects.find((row) => row.effect === 'diffuse').on`);
+  const state = await settled(page, (state) => !state.effects.find((row) => row.effect === 'diffuse').on);
   assertSame(await pixels(page), rendered(place.path, 'scene.txt', options(state)));
 });
 
@@ -176,10 +176,10 @@ test('a window of one pixel and a picture of eight thousand', async () => {
   await page.setViewportSize({ width: 1300, height: 800 });
   await page.locator('#res').fill('1x1');
   await page.keyboard.press('Enter');
-  let state = await settled(page, 'state.size[0] === 1');
+  let state = await settled(page, (state) => state.size[0] === 1);
   assertSame(await pixels(page), rendered(place.path, 'scene.txt', options(state)));
   await page.locator('#res').fill('8000x40');
   await page.keyboard.press('Enter');
-  state = await settled(page, 'state.size[0] === 8000');
+  state = await settled(page, (state) => state.size[0] === 8000);
   assertSame(await pixels(page), rendered(place.path, 'scene.txt', options(state)));
 });
