@@ -44,7 +44,6 @@ try {
     latencies.push(await page.evaluate(() => new Promise((done) => {
       const start = performance.now();
       const before = window.trueray.patches;
-      dispatchEvent(new KeyboardEvent('keydown', { code: 'ArrowLeft', bubbles: true }));
       const look = () => {
         if (window.trueray.patches > before) {
           dispatchEvent(new KeyboardEvent('keyup', { code: 'ArrowLeft' }));
