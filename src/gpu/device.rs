@@ -1,6 +1,5 @@
 //! Finding and opening a Vulkan device.
 
-use std::collections::HashMap;
 use std::fmt;
 use std::str::FromStr;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -126,11 +125,14 @@ pub struct Gpu {
     pub(super) mappable: bool,
     failure: Arc<Mutex<Option<String>>>,
     /// Compiled kernels that are used again; `None` where every renderer compiles its own.
-    kept: Option<Mutex<HashMap<Specialisation, Arc<Stages>>>>,
+    kept: Option<Mutex<Kept>>,
 }
 
-/// So many compiled pictures are kept; one more drops them all.
-const MAX_KEPT: usize = 64;
+/// Compiled kernels, those used last at the end.
+type Kept = Vec<(Specialisation, Arc<Stages>)>;
+
+/// For so many specialisations compiled kernels are kept; one more drops the one that was not used for the longest time.
+const MAX_KEPT: usize = 16;
 
 /// All Vulkan devices, in the driver's order.
 pub fn list() -> Result<Vec<DeviceInfo>, Error> {
@@ -203,15 +205,18 @@ impl Gpu {
     /// The kernels of a picture, and whether another picture has used them before.
     pub(super) fn stages(&self, specialisation: &Specialisation) -> Result<(Arc<Stages>, bool), Error> {
         let kept = || self.kept.as_ref().map(|kept| kept.lock().unwrap_or_else(PoisonError::into_inner));
-        if let Some(stages) = kept().and_then(|kept| kept.get(specialisation).cloned()) {
-            return Ok((stages, true));
+        if let Some(mut kept) = kept()
+            && let Some(index) = kept.iter().position(|(key, _)| key == specialisation)
+        {
+            kept[index..].rotate_left(1);
+            return Ok((Arc::clone(&kept[kept.len() - 1].1), true));
         }
         let stages = Arc::new(compile(self, specialisation)?);
         if let Some(mut kept) = kept() {
-            if kept.len() >= MAX_KEPT {
-                kept.clear();
+            if kept.len() == MAX_KEPT {
+                kept.remove(0);
             }
-            kept.insert(*specialisation, Arc::clone(&stages));
+            kept.push((*specialisation, Arc::clone(&stages)));
         }
         Ok((stages, false))
     }

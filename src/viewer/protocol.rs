@@ -114,10 +114,10 @@ impl Patch {
     pub fn encode(&self) -> Vec<u8> {
         let bytes = 24 + self.parts.iter().map(|(_, rgb)| 16 + rgb.len()).sum::<usize>();
         let mut message = Vec::with_capacity(bytes);
-        let mut word = |value: u32| message.extend(value.to_le_bytes());
-        [PATCH, 0, self.size.0, self.size.1, self.step, self.parts.len() as u32].into_iter().for_each(&mut word);
+        let head = [PATCH, 0, self.size.0, self.size.1, self.step, self.parts.len() as u32];
+        message.extend(head.iter().flat_map(|word| word.to_le_bytes()));
         for (part, rgb) in &self.parts {
-            [part.x, part.y, part.width, part.height].iter().for_each(|side| message.extend(side.to_le_bytes()));
+            message.extend([part.x, part.y, part.width, part.height].iter().flat_map(|side| side.to_le_bytes()));
             message.extend_from_slice(rgb);
         }
         message
@@ -125,20 +125,14 @@ impl Patch {
 
     /// Reads a message; `None` where it is none.
     pub fn decode(message: &[u8]) -> Option<Self> {
-        let mut rest = message;
-        let mut words = |count: usize| -> Option<(Vec<u32>, &[u8])> {
-            let (head, tail) = rest.split_at_checked(4 * count)?;
-            rest = tail;
-            Some((head.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word)).collect(), tail))
-        };
-        let (head, mut rest) = words(6)?;
-        let mut patch = Self { size: (head[2], head[3]), step: head[4], parts: Vec::new() };
-        if head[0] != PATCH || patch.step == 0 {
+        let (head, mut rest) = words::<6>(message)?;
+        let [PATCH, _, width, height, step, count] = head else { return None };
+        if step == 0 {
             return None;
         }
-        for _ in 0..head[5] {
-            let (place, tail) = rest.split_at_checked(16)?;
-            let [x, y, width, height] = [0, 1, 2, 3].map(|side| u32::from_le_bytes(place.as_chunks::<4>().0[side]));
+        let mut patch = Self { size: (width, height), step, parts: Vec::new() };
+        for _ in 0..count {
+            let ([x, y, width, height], tail) = words(rest)?;
             let part = Rectangle { x, y, width, height };
             let (columns, rows) = patch.sent(&part);
             let (rgb, tail) = tail.split_at_checked(columns * rows * 3)?;
@@ -147,4 +141,11 @@ impl Patch {
         }
         rest.is_empty().then_some(patch)
     }
+}
+
+/// The first words, and the rest.
+fn words<const N: usize>(message: &[u8]) -> Option<([u32; N], &[u8])> {
+    let (head, rest) = message.split_at_checked(4 * N)?;
+    let words = head.as_chunks::<4>().0;
+    Some((std::array::from_fn(|index| u32::from_le_bytes(words[index])), rest))
 }

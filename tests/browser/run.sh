@@ -1,0 +1,40 @@
+#!/bin/sh
+# Tests the live view in Chromium; installs what it needs where it can, and says so where it cannot. An argument is the
+# number of seconds for the soak, 20 without it.
+set -eu
+cd "$(dirname "$0")"
+
+skip() {
+    echo "browser tests skipped: $1" >&2
+    exit 0
+}
+
+as_root() {
+    if [ "$(id -u)" = 0 ]; then "$@"; else sudo -n "$@"; fi
+}
+
+has_chromium() {
+    [ -n "${CHROMIUM:-}" ] && return
+    for path in /usr/bin/chromium /usr/bin/chromium-browser /usr/bin/google-chrome; do
+        [ -x "$path" ] && return
+    done
+    return 1
+}
+
+has_node() {
+    command -v npm >/dev/null && [ "$(node -p 'parseInt(process.versions.node)')" -ge 20 ]
+}
+
+if ! has_chromium || ! has_node; then
+    command -v apt-get >/dev/null || skip "no Chromium or no Node 20, and no apt-get to install them"
+    as_root apt-get update -q || skip "the package lists cannot be read"
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends chromium nodejs npm ||
+        skip "Chromium and Node cannot be installed"
+    has_chromium && has_node || skip "Chromium or Node 20 is not there after their installation"
+fi
+npm ci --no-audit --no-fund || skip "npm ci cannot fetch playwright-core"
+
+cargo build --release --locked --manifest-path ../../Cargo.toml
+export NODEVICE_SELECT=1
+npm test
+node soak.js "${1:-20}"
