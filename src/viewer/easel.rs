@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use rayon::prelude::*;
 use serde_json::json;
 
 use super::canvas::Canvas;
@@ -17,7 +18,7 @@ use crate::film::encode_png;
 use crate::gpu;
 use crate::gpu::Gpu;
 use crate::precision::{Selection, Tier};
-use crate::scene::Scene;
+use crate::scene::{Names, Scene};
 use crate::settings::Settings;
 use crate::tiles::TILE;
 
@@ -33,6 +34,11 @@ const MAX_STEP: u32 = 64;
 const MAX_SLICE_BYTES: usize = 2 << 20;
 /// Pixels of a page's picture on each side at the most: browsers show no larger ones everywhere.
 const GREATEST_SIDE: u32 = 8192;
+
+/// A scene of more spheres is shown by so many of them while the eye moves.
+const PREVIEW_SPHERES: usize = 20_000;
+/// The eye is at rest when nothing was wished for so long: then all of a large scene is prepared, which takes its time.
+const REST: Duration = Duration::from_millis(250);
 
 /// Measured speed of pictures like the last ones.
 #[derive(Debug, Clone, Copy)]
@@ -133,6 +139,9 @@ pub(super) struct Easel<'g> {
     shown: Shown,
     not_finite: u64,
     measurement: Option<Measurement>,
+    /// The wishes that a part of a large scene is shown for, since when, and the time of a sample, in ms.
+    preview: Option<(u64, Instant)>,
+    preview_sample: f64,
     /// Why there is no picture of the newest wish.
     trouble: Option<String>,
     /// Words about the scene and the device that the page has not been told.
@@ -164,6 +173,8 @@ impl<'g> Easel<'g> {
             shown: Shown::default(),
             not_finite: 0,
             measurement: None,
+            preview: None,
+            preview_sample: 1e-3,
             trouble: None,
             tell: true,
         }
@@ -173,7 +184,7 @@ impl<'g> Easel<'g> {
     pub(super) fn scene_changed(&mut self, replaced: bool) {
         self.tell = true;
         if replaced {
-            (self.subject, self.pass, self.measurement) = (None, None, None);
+            (self.subject, self.pass, self.measurement, self.preview) = (None, None, None, None);
         }
     }
 
@@ -210,8 +221,23 @@ impl<'g> Easel<'g> {
     }
 
     fn try_turn(&mut self, setting: &mut Setting) -> Result<(), gpu::Error> {
-        if self.is_behind() && !self.pass.as_ref().is_some_and(|pass| pass.first) {
-            self.begin(setting);
+        let previews = setting.scene.spheres.len() > PREVIEW_SPHERES;
+        if self.is_behind() && (previews || !self.pass.as_ref().is_some_and(|pass| pass.first)) {
+            match self.preview {
+                _ if !previews => self.begin(setting),
+                Some((version, since)) if version == self.desk.version() => {
+                    if since.elapsed() >= REST {
+                        self.begin(setting);
+                    } else {
+                        std::thread::sleep(Duration::from_millis(2));
+                    }
+                }
+                _ => return self.paint_preview(setting),
+            }
+        }
+        if previews && self.is_behind() {
+            self.run_errands(setting);
+            return Ok(());
         }
         self.run_errands(setting);
         if self.pass.is_none() {
@@ -224,6 +250,31 @@ impl<'g> Easel<'g> {
             self.send_state(setting);
         }
         self.measure(setting)
+    }
+
+    /// Shows the spheres of a large scene that look largest, in few pixels: a picture to find the way by.
+    fn paint_preview(&mut self, setting: &mut Setting) -> Result<(), gpu::Error> {
+        (self.pass, self.measurement, self.trouble) = (None, None, None);
+        let (version, wishes) = self.desk.wishes();
+        let settings = Settings { samples: 1, ..wishes.settings() };
+        let size = fitted(wishes.size(setting.scene), setting.pixels);
+        let mut part = largest(setting.scene, &settings, PREVIEW_SPHERES);
+        let effects = Effects::requested(&part, &settings, &wishes.effects);
+        let ladder = self.gpu.map_or(&Tier::ALL[..], Gpu::ladder);
+        let tier = Selection::of(&settings.view.relative(&part), &effects, wishes.precision, ladder).tier;
+        let backend = self.gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, tier));
+        let pace = Pace { prepare: 0.0, sample: self.preview_sample, measured: true };
+        let step = pace.step(size, FRAME).max(2);
+        let (mut engine, (width, height)) = coarse_engine(backend, &mut part, &settings, &effects, size, step)?;
+        let mut rgb = vec![0; width as usize * height as usize * 3];
+        engine.rows(0, &mut rgb)?;
+        if self.canvas.size() != size {
+            self.canvas = Canvas::new(size);
+        }
+        self.preview_sample = engine.times().render_ms / (f64::from(width) * f64::from(height)).max(4096.0);
+        self.desk.send_bytes(self.canvas.coarse(step, rgb).encode());
+        self.preview = Some((version, Instant::now()));
+        Ok(())
     }
 
     /// Looks at the newest wishes.
@@ -250,7 +301,8 @@ impl<'g> Easel<'g> {
         while step > 1 {
             coarse.push((step, 1));
             // Each step takes a fraction of the time of the next.
-            step = (1..=step / 4).rev().find(|_| self.pace.forecast(size, 1) > PATIENCE).unwrap_or(1);
+            let worth_it = self.pace.forecast(size, 1) > PATIENCE && self.pace.prepare < SLICE;
+            step = if worth_it { (step / 4).max(1) } else { 1 };
         }
         to_come.extend(coarse.into_iter().rev());
         let took = ms(start.elapsed());
@@ -457,6 +509,39 @@ fn coarse_engine<'g>(
         scene.window = window;
         Ok((engine?, (width, height)))
     })
+}
+
+/// `scene` with so many of its spheres: those that look largest from the eye. They stay in the order of the file.
+fn largest(scene: &Scene, settings: &Settings, count: usize) -> Scene {
+    let eye = settings.view.eye;
+    let [_, _, back] = settings.view.axes();
+    let apparent = |index: &u32| {
+        let sphere = &scene.spheres[*index as usize];
+        let radius = sphere.scale.abs().max_element();
+        let way = sphere.center - eye;
+        // What lies behind the eye is not seen, only mirrored.
+        let seen = way.dot(back) - radius < 0.0;
+        if seen { (radius * radius / way.length_squared().max(f64::MIN_POSITIVE)) as f32 } else { 0.0 }
+    };
+    let mut order: Vec<(f32, u32)> =
+        (0..scene.spheres.len() as u32).into_par_iter().map(|index| (apparent(&index), index)).collect();
+    if count < order.len() {
+        order.select_nth_unstable_by(count, |a, b| b.0.total_cmp(&a.0));
+        order.truncate(count);
+    }
+    order.sort_unstable_by_key(|&(_, index)| index);
+    let mut names = Names::default();
+    for &(_, index) in &order {
+        names.push(scene.sphere_names.get(index as usize));
+    }
+    Scene {
+        spheres: order.iter().map(|&(_, index)| scene.spheres[index as usize]).collect(),
+        sphere_names: names,
+        lights: scene.lights.clone(),
+        light_names: scene.light_names.clone(),
+        output: None,
+        ..*scene
+    }
 }
 
 /// Lets `action` see the scene with this size of its picture. A scene may be too large to be copied for that.
