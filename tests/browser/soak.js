@@ -9,7 +9,7 @@ const seed = Number(process.argv[3] ?? 1);
 /** What the program may take more at the end than after the first third, in MiB. */
 const MAX_GROWTH = 200;
 /** 95 of 100 inputs must be answered within this, in ms: kernels are compiled in between. */
-const MAX_LATENCY = 3000;
+const MAX_LATENCY = 1500;
 
 let state = seed;
 const random = () => {
