@@ -4,11 +4,19 @@
 fn nearest_hit(ray: Ray, own: Own, within: Range) -> Hit {
     var range = within;
     var nearest = no_hit();
-    for (var sphere = first_sphere(); sphere < sphere_count(); sphere++) {
+    var sphere = first_sphere();
+    if sphere == sphere_count() {
+        return nearest;
+    }
+    loop {
         let root = accepted_root(ray, sphere, own, range);
         if root.counts {
             nearest = Hit(true, root.t, sphere, root.inside);
             range.t_max = root.t;
+        }
+        sphere++;
+        if sphere == sphere_count() {
+            break;
         }
     }
     return nearest;
@@ -27,9 +35,14 @@ fn nearest_reflected(ray: Ray, own: Own) -> Hit {
 // Whether any sphere stands between the ray's origin and the light with this index, at t = 1.
 fn any_hit(ray: Ray, own: Own, light: u32) -> bool {
     var blocked = false;
-    for (var sphere = first_sphere(); sphere < sphere_count(); sphere++) {
+    var sphere = first_sphere();
+    if sphere == sphere_count() {
+        return blocked;
+    }
+    loop {
         blocked |= blocks(ray, sphere, own);
-        if LEAVES_EARLY && blocked {
+        sphere++;
+        if sphere == sphere_count() || (LEAVES_EARLY && blocked) {
             break;
         }
     }

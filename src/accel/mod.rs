@@ -57,5 +57,5 @@ fn light_entries(spheres: u64, _lights: u64) -> u64 {
 }
 
 fn grid_density() -> f64 {
-    env("GD", 1.0)
+    env("GD", 3.0)
 }

@@ -97,10 +97,12 @@ impl Specialisation {
     }
 }
 
-/// The entry point that renders tiles.
-pub const RENDER_TILES: &str = "render_tiles";
-/// The entry point that follows paths by one bounce.
-pub const TRACE_PATHS: &str = "trace_paths";
+/// The entry point that casts the primary rays of tiles.
+pub const SEE_TILES: &str = "see_tiles";
+/// The entry point that shades hits.
+pub const SHADE_HITS: &str = "shade_hits";
+/// The entry point that casts the reflection rays of paths.
+pub const WALK_PATHS: &str = "walk_paths";
 
 /// How a binding is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -135,9 +137,11 @@ impl Stage {
 /// The kernels of a picture.
 #[derive(Debug)]
 pub(super) struct Stages {
-    pub(super) tiles: Stage,
-    /// One bounce of the paths, and what goes between two bounces; where there are reflections.
-    pub(super) bounces: Option<(Stage, Stage)>,
+    pub(super) see: Stage,
+    pub(super) begin_shading: Stage,
+    pub(super) shade: Stage,
+    /// What goes before a bounce of the paths, and the bounce; where there are reflections.
+    pub(super) bounce: Option<[Stage; 2]>,
     /// From samples to pixels, where there are several a pixel.
     pub(super) resolve: Option<Stage>,
 }
@@ -146,23 +150,33 @@ pub(super) struct Stages {
 pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stages, Error> {
     let constants = specialisation.constants();
     let module = gpu.shader_module(&specialisation.module())?;
-    let looped = |few, many| if matches!(specialisation.storage, Storage::Few(_)) { few } else { many };
+    let is_few = matches!(specialisation.storage, Storage::Few(_));
+    let looped = if is_few { Uniform } else { Read };
     let lights = if specialisation.storage == Storage::ManyLights { Read } else { Uniform };
-    let mut common = vec![(0, Uniform), (1, looped(Uniform, Read)), (2, Read), (3, lights), (7, ReadWrite)];
-    common.extend([(8, ReadWrite), (11, ReadWrite), (12, ReadWrite)]);
+    // What every stage reads and writes.
+    let mut common = vec![(0, Uniform), (1, looped), (2, Read), (7, ReadWrite), (8, ReadWrite), (12, ReadWrite)];
     if specialisation.kernel.carries_low() {
-        common.extend([(9, looped(Uniform, Read)), (10, lights)]);
+        common.push((9, looped));
     }
-    if !matches!(specialisation.storage, Storage::Few(_)) {
-        common.extend([(13, Read), (14, Uniform)]);
+    if !is_few {
+        common.push((13, Read));
     }
-    let mut tiles = common.clone();
-    tiles.extend([(4, Read), (5, Read), (6, Read)]);
-    let tiles = stage(gpu, &module, RENDER_TILES, &constants, &tiles)?;
-    let bounces = if specialisation.has_paths() {
-        let paths = stage(gpu, &module, TRACE_PATHS, &constants, &common)?;
-        let advance = gpu.shader_module(&Module::advance())?;
-        Some((paths, stage(gpu, &advance, "advance", &[], &[(12, ReadWrite), (16, ReadWrite)])?))
+    let primary = [(4, Read), (5, Read), (6, Read)];
+    let mut shading = vec![(3, lights), (11, ReadWrite)];
+    if specialisation.kernel.carries_low() {
+        shading.push((10, lights));
+    }
+    if !is_few {
+        shading.push((14, Uniform));
+    }
+    let between = gpu.shader_module(&Module::between_stages())?;
+    let between = |entry_point| stage(gpu, &between, entry_point, &[], &[(12, ReadWrite), (16, ReadWrite)]);
+    let see = stage(gpu, &module, SEE_TILES, &constants, &[&common[..], &primary].concat())?;
+    let begin_shading = between("begin_shading")?;
+    let shade = stage(gpu, &module, SHADE_HITS, &constants, &[&common[..], &primary, &shading].concat())?;
+    let bounce = if specialisation.has_paths() {
+        let walk = stage(gpu, &module, WALK_PATHS, &constants, &[&common[..], &[(11, ReadWrite)]].concat())?;
+        Some([between("begin_bounce")?, walk])
     } else {
         None
     };
@@ -173,7 +187,7 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
     } else {
         None
     };
-    Ok(Stages { tiles, bounces, resolve })
+    Ok(Stages { see, begin_shading, shade, bounce, resolve })
 }
 
 fn stage(

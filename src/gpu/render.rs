@@ -8,7 +8,7 @@ use wgpu::util::DeviceExt;
 use super::device::Gpu;
 use super::error::Error;
 use super::pack::Packed;
-use super::pipeline::{MAX_FEW, MAX_LISTED_LIGHTS, MAX_UNIFORM_LIGHTS, Specialisation, Stages, compile};
+use super::pipeline::{MAX_FEW, MAX_LISTED_LIGHTS, MAX_UNIFORM_LIGHTS, Specialisation, Stage, Stages, compile};
 use super::readable::Readable;
 use super::shader::Storage;
 use super::timestamps::Timestamps;
@@ -84,9 +84,11 @@ struct Inputs {
 #[derive(Debug)]
 struct Work {
     stages: Stages,
-    tiles_group: wgpu::BindGroup,
-    /// For one bounce, and for what goes between two.
-    bounce_groups: Option<[wgpu::BindGroup; 2]>,
+    see_group: wgpu::BindGroup,
+    /// For what goes between two stages.
+    between_group: wgpu::BindGroup,
+    shade_group: wgpu::BindGroup,
+    walk_group: Option<wgpu::BindGroup>,
     resolve_group: Option<wgpu::BindGroup>,
     tiles: wgpu::Buffer,
     stage: wgpu::Buffer,
@@ -97,6 +99,9 @@ struct Work {
     /// Tiles that the buffers hold.
     capacity: u32,
 }
+
+/// Bytes before the hits in the shader's `Stage`.
+const STAGE_HEAD: u64 = 32;
 
 /// Invocations of a workgroup of the kernels that are not over tiles.
 const GROUP: u64 = 64;
@@ -229,32 +234,36 @@ impl<'a> GpuRenderer<'a> {
         self.gpu.queue.write_buffer(&work.tiles, 0, bytemuck::cast_slice(tiles));
         // The first stage's paths go into the first half.
         let half = work.capacity * TILE_PIXELS as u32 * self.samples as u32;
-        self.gpu.queue.write_buffer(&work.stage, 0, bytemuck::cast_slice(&[half, 0, 0, 0, 0]));
+        self.gpu.queue.write_buffer(&work.stage, 0, bytemuck::cast_slice(&[half, 0, 0, 0, 0, 0, 0]));
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                 label: None,
                 timestamp_writes: self.timestamps.as_ref().map(Timestamps::writes),
             });
-            pass.set_pipeline(&work.stages.tiles.pipeline);
-            pass.set_bind_group(0, &work.tiles_group, &[]);
-            pass.dispatch_workgroups(tiles.len() as u32, 1, 1);
-            if let (Some((paths, advance)), Some([paths_group, advance_group])) =
-                (&work.stages.bounces, &work.bounce_groups)
-            {
+            let mut run = |stage: &Stage, group: &wgpu::BindGroup, workgroups: Option<u32>| {
+                pass.set_pipeline(&stage.pipeline);
+                pass.set_bind_group(0, group, &[]);
+                match workgroups {
+                    Some(count) => pass.dispatch_workgroups(count, 1, 1),
+                    None => pass.dispatch_workgroups_indirect(&work.workgroups, 0),
+                }
+            };
+            let tiles = Some(tiles.len() as u32);
+            let stages = &work.stages;
+            run(&stages.see, &work.see_group, tiles);
+            run(&stages.begin_shading, &work.between_group, Some(1));
+            run(&stages.shade, &work.shade_group, None);
+            if let (Some([begin_bounce, walk]), Some(walk_group)) = (&stages.bounce, &work.walk_group) {
                 for _ in 0..self.max_depth {
-                    pass.set_pipeline(&advance.pipeline);
-                    pass.set_bind_group(0, advance_group, &[]);
-                    pass.dispatch_workgroups(1, 1, 1);
-                    pass.set_pipeline(&paths.pipeline);
-                    pass.set_bind_group(0, paths_group, &[]);
-                    pass.dispatch_workgroups_indirect(&work.workgroups, 0);
+                    run(begin_bounce, &work.between_group, Some(1));
+                    run(walk, walk_group, None);
+                    run(&stages.begin_shading, &work.between_group, Some(1));
+                    run(&stages.shade, &work.shade_group, None);
                 }
             }
-            if let (Some(resolve), Some(group)) = (&work.stages.resolve, &work.resolve_group) {
-                pass.set_pipeline(&resolve.pipeline);
-                pass.set_bind_group(0, group, &[]);
-                pass.dispatch_workgroups(tiles.len() as u32, 1, 1);
+            if let (Some(resolve), Some(group)) = (&stages.resolve, &work.resolve_group) {
+                run(resolve, group, tiles);
             }
         }
         if let Some(timestamps) = &self.timestamps {
@@ -344,21 +353,24 @@ impl Work {
             buffers.extend([(9, shapes(&low.shapes)), (10, lights(&low.lights))]);
         }
         let tiles = empty(u64::from(capacity) * 8, storage | wgpu::BufferUsages::COPY_DST);
-        let stage = empty(20, storage | wgpu::BufferUsages::COPY_DST);
+        let stage = empty(STAGE_HEAD + 8 * slots, storage | wgpu::BufferUsages::COPY_DST);
         let workgroups = empty(12, storage | wgpu::BufferUsages::INDIRECT);
         let colors = stages.resolve.as_ref().map(|_| empty(slots * color_size, storage));
         let results = colors.as_ref().unwrap_or(&pixels.buffer);
         let mut all: Vec<_> = buffers.iter().map(|(binding, buffer)| (*binding, buffer)).collect();
         all.extend([(6, &tiles), (7, results), (8, &ray_counts.buffer), (12, &stage), (15, &pixels.buffer)]);
         all.push((16, &workgroups));
-        let tiles_group = stages.tiles.bind(gpu, &all);
-        let bounce_groups =
-            stages.bounces.as_ref().map(|(paths, advance)| [paths.bind(gpu, &all), advance.bind(gpu, &all)]);
+        let see_group = stages.see.bind(gpu, &all);
+        let between_group = stages.begin_shading.bind(gpu, &all);
+        let shade_group = stages.shade.bind(gpu, &all);
+        let walk_group = stages.bounce.as_ref().map(|[_, walk]| walk.bind(gpu, &all));
         let resolve_group = stages.resolve.as_ref().map(|resolve| resolve.bind(gpu, &all));
         Self {
             stages,
-            tiles_group,
-            bounce_groups,
+            see_group,
+            between_group,
+            shade_group,
+            walk_group,
             resolve_group,
             tiles,
             stage,

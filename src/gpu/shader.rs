@@ -49,7 +49,7 @@ impl Kernel {
         matches!(self, Self::Tier(Tier::Robust) | Self::Pairs | Self::NoBarrier)
     }
 
-    /// Bytes of a `Path` of `shaders/main.wgsl`; a test holds them together.
+    /// Bytes of a `Path` of `shaders/stages.wgsl`; a test holds them together.
     pub fn path_size(self) -> u64 {
         match (self.is_double(), self.carries_low()) {
             (true, _) => 128,
@@ -147,12 +147,12 @@ impl Module {
         let mut parts = intersection_parts(kernel, storage);
         parts.extend([part!("film.wgsl"), part!("quantize.wgsl")]);
         parts.push(if samples { part!("film_samples.wgsl") } else { part!("film_pixels.wgsl") });
-        parts.extend([part!("shade.wgsl"), part!("trace.wgsl"), part!("main.wgsl")]);
+        parts.extend([part!("shade.wgsl"), part!("trace.wgsl"), part!("stages.wgsl")]);
         Self::join(parts)
     }
 
-    /// The module that goes from one bounce of the paths to the next.
-    pub fn advance() -> Self {
+    /// The module that goes from one stage to the next.
+    pub fn between_stages() -> Self {
         Self::join(vec![part!("stage.wgsl")])
     }
 
