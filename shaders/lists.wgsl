@@ -14,9 +14,6 @@ struct Face {
 
 // Lists of spheres: the offsets of all lists, then the entries. Offsets count from the beginning of the buffer.
 @group(0) @binding(13) var<storage, read> lists: array<u32>;
-// Six of each light. The length is MAX_LISTED_LIGHTS in src/gpu/pipeline.rs.
-@group(0) @binding(14) var<uniform> faces: array<Face, 192>;
-
 // Radii that a sphere reaches towards a light, rounding included: REACH in src/accel/light_buffer.rs.
 const REACH: real = real(1.01);
 

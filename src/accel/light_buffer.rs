@@ -142,10 +142,8 @@ impl Extent {
 impl<'a> Around<'a> {
     fn new(enclosure: &'a Enclosure, light: DVec3, entries: u64, rounding: Rounding, first: u32) -> Self {
         let count = enclosure.len();
-        let nearness = |sphere: usize| {
-            let Solid { center, semi_axes } = enclosure.solid(sphere);
-            (center - light).length() - semi_axes.max_element() * REACH
-        };
+        // As the kernels calculate it: what they leave out must follow in the list.
+        let nearness = |sphere| (enclosure.center(sphere) - light).length() - enclosure.radius(sphere) * REACH;
         let mut keys: Vec<(f32, u32)> = (0..count).into_par_iter().map(|s| (nearness(s) as f32, s as u32)).collect();
         keys.par_sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let order = keys.into_iter().map(|(_, sphere)| sphere).collect();

@@ -3,7 +3,7 @@
 use super::intersect::Range;
 use super::real::Real;
 use super::vec3::Vec3;
-use crate::accel::Acceleration;
+use crate::accel::{Acceleration, Rounding};
 use crate::camera::{Camera, NEAR_T_MIN};
 use crate::effects::{Effect, EffectSet, Effects};
 use crate::geometry::{Ellipsoid, ellipsoids, shape_indices};
@@ -74,7 +74,13 @@ pub(crate) struct World<T> {
 }
 
 impl<T: Real> World<T> {
-    pub(crate) fn new(scene: &Scene, settings: &Settings, effects: &Effects, camera: &Camera) -> Self {
+    pub(crate) fn new(
+        scene: &Scene,
+        settings: &Settings,
+        effects: &Effects,
+        camera: &Camera,
+        rounding: Rounding,
+    ) -> Self {
         let on = |effect| effects.set.has(effect);
         let ellipsoids = ellipsoids(scene, on(Effect::Ellipsoids));
         let indices = match settings.secondary {
@@ -101,7 +107,7 @@ impl<T: Real> World<T> {
             shadows: on(Effect::Shadows),
             specular: settings.specular,
             max_depth: effects.depth,
-            accel: Acceleration::new(scene, camera, effects.set, T::ROUNDING),
+            accel: Acceleration::new(scene, camera, effects.set, rounding),
         }
     }
 }

@@ -41,6 +41,7 @@ pub struct ParamValues {
     pub sphere_count: u32,
     pub light_count: u32,
     pub max_depth: u32,
+    pub first_row: u32,
 }
 
 /// Where the lists of spheres are.
@@ -140,6 +141,8 @@ macro_rules! layout {
                     max_depth: u32,
                     /// 0, which no compiler knows.
                     zero: u32,
+                    /// Where in the window the rows begin.
+                    first_row: u32,
                     /// To the size that WGSL gives the struct.
                     padding: [u32; $params],
                 }
@@ -253,6 +256,7 @@ macro_rules! layout {
                         sphere_count: values.sphere_count,
                         light_count: values.light_count,
                         max_depth: values.max_depth,
+                        first_row: values.first_row,
                         ..Params::zeroed()
                     }
                 }
@@ -307,11 +311,11 @@ macro_rules! layout {
 
 layout!(
     /// The structs of the `f32` kernels.
-    single, f32, params 3, shape 0, material 1, light 1, face 0 2
+    single, f32, params 2, shape 0, material 1, light 1, face 0 2
 );
 layout!(
     /// The structs of the `f64` kernels.
-    double, f64, params 6, shape 1, material 2, light 2, face 1 2
+    double, f64, params 5, shape 1, material 2, light 2, face 1 2
 );
 
 const _: () = {

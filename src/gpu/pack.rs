@@ -23,10 +23,9 @@ pub(super) struct Packed {
     pub(super) materials: Vec<u8>,
     /// One per light.
     pub(super) lights: Vec<u8>,
-    /// x of each sample column on the image plane, on to the end of the last tile, and then what rounding took from each.
-    pub(super) columns: Vec<u8>,
-    /// y of each sample row on the image plane, likewise.
-    pub(super) rows: Vec<u8>,
+    /// x of each sample column on the image plane, on to the end of the last tile, then y of each sample row likewise, and
+    /// then what rounding took from each.
+    pub(super) window: Vec<u8>,
     /// The lists of spheres: all offsets, then all entries.
     pub(super) lists: Vec<u32>,
     /// Six faces a light with lists.
@@ -78,8 +77,10 @@ fn pack<L: Layout>(
         Secondary::Epsilon { .. } => (0..ellipsoids.len() as u32).collect(),
     };
     let shapes = shape_values(&ellipsoids, indices, on(Effect::Ellipsoids));
-    let columns: Vec<f64> = (0..scene.width.next_multiple_of(TILE) * settings.samples).map(|i| camera.x(i)).collect();
-    let rows: Vec<f64> = (0..scene.height.next_multiple_of(TILE) * settings.samples).map(|j| camera.y(j)).collect();
+    let columns = (0..scene.width.next_multiple_of(TILE) * settings.samples).map(|i| camera.x(i));
+    let first_row = columns.len() as u32;
+    let rows = (0..scene.height.next_multiple_of(TILE) * settings.samples).map(|j| camera.y(j));
+    let window: Vec<f64> = columns.chain(rows).collect();
 
     let params = ParamValues {
         background: scene.background,
@@ -93,6 +94,7 @@ fn pack<L: Layout>(
         sphere_count: scene.spheres.len() as u32,
         light_count: scene.lights.len() as u32,
         max_depth: effects.depth,
+        first_row,
     };
     // Without the effect the kernel leaves out the way into object space.
     let scale = |ellipsoid: &Ellipsoid| if on(Effect::Ellipsoids) { ellipsoid.scale } else { DVec3::ONE };
@@ -109,8 +111,7 @@ fn pack<L: Layout>(
         shapes: bytes(shapes.iter().map(L::shape)),
         materials: bytes(scene.spheres.iter().zip(&ellipsoids).map(|(s, e)| L::material(s, scale(e)))),
         lights: bytes(scene.lights.iter().map(L::light)),
-        columns: reals(&columns),
-        rows: reals(&rows),
+        window: reals(&window),
         lists,
         faces: bytes(accel.lights.faces.iter().flatten().map(|face| L::face(face, lights_base))),
         low: with_low.then(low),

@@ -10,10 +10,9 @@ use crate::settings::{Secondary, Settings, Specular};
 /// Up to this many spheres and lights a pipeline is compiled for their very number: the array lengths in
 /// `shaders/few.wgsl`.
 pub(super) const MAX_FEW: usize = 16;
-/// Up to this many lights lie in a uniform buffer: the array lengths in `shaders/lights_uniform.wgsl`.
-pub(super) const MAX_UNIFORM_LIGHTS: usize = 256;
-/// Up to this many lights have lists: a sixth of the array length in `shaders/lists.wgsl`.
-pub(super) const MAX_LISTED_LIGHTS: usize = 32;
+/// Up to this many lights and their faces lie in uniform buffers: the array lengths in `shaders/lights_uniform.wgsl`, a sixth
+/// of that in `shaders/faces_uniform.wgsl`.
+pub(super) const MAX_UNIFORM_LIGHTS: usize = 32;
 
 /// What a pipeline is specialised for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -161,13 +160,13 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
     if !is_few {
         common.push((13, Read));
     }
-    let primary = [(4, Read), (5, Read), (6, Read)];
+    let primary = [(4, Read), (6, Read)];
     let mut shading = vec![(3, lights), (11, ReadWrite)];
     if specialisation.kernel.carries_low() {
         shading.push((10, lights));
     }
     if !is_few {
-        shading.push((14, Uniform));
+        shading.push((14, lights));
     }
     let between = gpu.shader_module(&Module::between_stages())?;
     let between = |entry_point| stage(gpu, &between, entry_point, &[], &[(12, ReadWrite), (16, ReadWrite)]);

@@ -368,6 +368,7 @@ fn params<L: Layout>() -> Vec<u8> {
         sphere_count: 0,
         light_count: 0,
         max_depth: 0,
+        first_row: 0,
     })])
 }
 

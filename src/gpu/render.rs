@@ -8,11 +8,11 @@ use wgpu::util::DeviceExt;
 use super::device::Gpu;
 use super::error::Error;
 use super::pack::Packed;
-use super::pipeline::{MAX_FEW, MAX_LISTED_LIGHTS, MAX_UNIFORM_LIGHTS, Specialisation, Stage, Stages, compile};
+use super::pipeline::{MAX_FEW, MAX_UNIFORM_LIGHTS, Specialisation, Stage, Stages, compile};
 use super::readable::Readable;
-use super::shader::Storage;
+use super::shader::{Kernel, Storage};
 use super::timestamps::Timestamps;
-use crate::accel::Acceleration;
+use crate::accel::{Acceleration, Rounding};
 use crate::camera::Camera;
 use crate::effects::{Effect, Effects};
 use crate::geometry::in_range;
@@ -110,11 +110,23 @@ impl<'a> GpuRenderer<'a> {
     /// Prepares `scene` for `gpu`; the kernels are compiled when the first tile needs them.
     pub fn new(gpu: &'a Gpu, scene: &Scene, settings: &Settings, effects: &Effects, tier: Tier) -> Result<Self, Error> {
         let kernel = gpu.kernel(tier)?;
+        Self::with_rounding(gpu, scene, settings, effects, kernel, kernel.rounding())
+    }
+
+    /// Likewise with a kernel of one's choice, and lists of spheres for one that rounds like this.
+    pub fn with_rounding(
+        gpu: &'a Gpu,
+        scene: &Scene,
+        settings: &Settings,
+        effects: &Effects,
+        kernel: Kernel,
+        rounding: Rounding,
+    ) -> Result<Self, Error> {
         let (scene, settings) = in_range(scene, settings);
         let (scene, settings) = (scene.as_ref(), &settings);
         let specialisation = Specialisation::new(scene, settings, effects.set, kernel);
         let camera = Camera::new(scene, settings);
-        let accel = Acceleration::new(scene, &camera, specialisation.listed_effects(), kernel.rounding());
+        let accel = Acceleration::new(scene, &camera, specialisation.listed_effects(), rounding);
         let packed = Packed::new(scene, settings, effects, kernel, &accel);
         check_fits(gpu, &packed)?;
         let samples = u64::from(settings.samples * settings.samples);
@@ -331,6 +343,10 @@ impl Work {
             Storage::Many => fixed(contents, MAX_UNIFORM_LIGHTS, packed.light_size),
             _ => filled(contents, storage),
         };
+        let faces = |contents: &[u8]| match specialisation.storage {
+            Storage::ManyLights => filled(contents, storage),
+            _ => fixed(contents, 6 * MAX_UNIFORM_LIGHTS, packed.face_size),
+        };
         let pixel_count = u64::from(capacity) * TILE_PIXELS as u64;
         let slots = pixel_count * u64::from(specialisation.samples * specialisation.samples);
         let pixels = Readable::new(gpu, pixel_count);
@@ -343,11 +359,10 @@ impl Work {
             (1, shapes(&packed.shapes)),
             (2, filled(&packed.materials, storage)),
             (3, lights(&packed.lights)),
-            (4, filled(&packed.columns, storage)),
-            (5, filled(&packed.rows, storage)),
+            (4, filled(&packed.window, storage)),
             (11, empty(paths, storage)),
             (13, filled(bytemuck::cast_slice(&packed.lists), storage)),
-            (14, fixed(&packed.faces, 6 * MAX_LISTED_LIGHTS, packed.face_size)),
+            (14, faces(&packed.faces)),
         ];
         if let Some(low) = &packed.low {
             buffers.extend([(9, shapes(&low.shapes)), (10, lights(&low.lights))]);
@@ -387,8 +402,8 @@ fn check_fits(gpu: &Gpu, packed: &Packed) -> Result<(), Error> {
     let sizes = [
         ("spheres", packed.materials.len().max(packed.shapes.len())),
         ("lights", packed.lights.len()),
-        ("columns", packed.columns.len()),
-        ("rows", packed.rows.len()),
+        ("columns and rows", packed.window.len()),
+        ("faces around the lights", packed.faces.len()),
         ("lists", packed.lists.len() * 4),
     ];
     let limit = gpu.info.max_storage_binding.min(gpu.info.max_buffer);

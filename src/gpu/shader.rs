@@ -126,9 +126,10 @@ fn intersection_parts(kernel: Kernel, storage: Storage) -> Vec<Part> {
         Kernel::Schoolbook => vec![real, plain_ray, part!("kernel_schoolbook.wgsl")],
     });
     parts.push(part!("intersect.wgsl"));
-    parts.push(match storage {
-        Storage::Few(_) | Storage::Ranges => part!("every.wgsl"),
-        Storage::Many | Storage::ManyLights => part!("lists.wgsl"),
+    parts.extend(match storage {
+        Storage::Few(_) | Storage::Ranges => vec![part!("every.wgsl")],
+        Storage::Many => vec![part!("lists.wgsl"), part!("faces_uniform.wgsl")],
+        Storage::ManyLights => vec![part!("lists.wgsl"), part!("faces_storage.wgsl")],
     });
     parts
 }

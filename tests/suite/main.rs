@@ -14,6 +14,7 @@ mod effects;
 mod export;
 mod film;
 mod keys;
+mod lists;
 mod oracle;
 mod parse;
 mod pictures;
