@@ -40,6 +40,10 @@ pub(crate) struct Material<T> {
     pub ks: T,
     pub kr: T,
     pub n: T,
+    pub kt: T,
+    /// Index of refraction of the inside relative to the outside, and one over it.
+    pub eta: T,
+    pub inv_eta: T,
 }
 
 /// One point light.
@@ -63,9 +67,13 @@ pub(crate) struct World<T> {
     pub shadow_t_min: T,
     /// The roots that count along a reflection ray.
     pub reflection: Range<T>,
-    /// Whether the own sphere counts by its analytic other root only.
+    /// The roots that count along a refraction ray.
+    pub refraction: Range<T>,
+    /// Whether shadow and reflection rays meet their own sphere by its analytic other root only; refraction rays always do.
     pub skip_self: bool,
     pub shadows: bool,
+    /// Whether there are refraction rays.
+    pub refracts: bool,
     pub specular: Specular,
     pub max_depth: u32,
 }
@@ -74,10 +82,8 @@ impl<T: Real> World<T> {
     pub(crate) fn new(scene: &Scene, settings: &Settings, effects: &Effects) -> Self {
         let on = |effect| effects.set.has(effect);
         let ellipsoids = ellipsoids(scene, on(Effect::Ellipsoids));
-        let indices = match settings.secondary {
-            Secondary::SkipSelf => shape_indices(&ellipsoids),
-            Secondary::Epsilon { .. } => Vec::new(),
-        };
+        let skip_self = settings.secondary == Secondary::SkipSelf;
+        let indices = if skip_self || on(Effect::Refraction) { shape_indices(&ellipsoids) } else { Vec::new() };
         let shape = |(i, e): (usize, &Ellipsoid)| Shape {
             center: Vec3::from_f64(e.center),
             inv_scale: Vec3::from_f64(e.inv_scale),
@@ -94,8 +100,10 @@ impl<T: Real> World<T> {
             primary: if on(Effect::Shells) { range(NEAR_T_MIN, true) } else { range(0.0, false) },
             shadow_t_min: T::from_f64(settings.secondary.shadow_t_min()),
             reflection: range(settings.secondary.reflection_t_min(), true),
-            skip_self: settings.secondary == Secondary::SkipSelf,
+            refraction: range(0.0, true),
+            skip_self,
             shadows: on(Effect::Shadows),
+            refracts: on(Effect::Refraction),
             specular: settings.specular,
             max_depth: effects.depth,
         }
@@ -111,8 +119,11 @@ impl<T: Real> Material<T> {
             ka: term(Effect::Ambient, sphere.ka),
             kd: term(Effect::Diffuse, sphere.kd),
             ks: term(Effect::Specular, sphere.ks),
-            kr: T::from_f64(sphere.kr),
+            kr: term(Effect::Reflections, sphere.kr),
             n: T::from_f64(sphere.n),
+            kt: term(Effect::Refraction, sphere.kt),
+            eta: T::from_f64(sphere.eta),
+            inv_eta: T::ONE / T::from_f64(sphere.eta),
         }
     }
 }

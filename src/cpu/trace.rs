@@ -4,14 +4,18 @@ use super::intersect::{Ray, nearest_hit};
 use super::real::Real;
 use super::scene::World;
 use super::shade::{Surface, local_color, surface_at};
+use super::trace_refraction::trace_refraction;
 use super::vec3::Vec3;
 use super::witness::Witness;
 
-/// Mirrors with Kr > 1 amplify no further, or products would overflow; whatever is lit at all is white long before.
-const MAX_THROUGHPUT: f64 = 1e30;
+/// Mirrors with Kr > 1 and glass with Kt > 1 amplify no further, or products would overflow; whatever is lit at all is white long before.
+pub(super) const MAX_THROUGHPUT: f64 = 1e30;
 
 /// The unclamped colour seen along `primary`.
 pub(crate) fn trace<T: Real, W: Witness<T>>(world: &World<T>, primary: Ray<T>, witness: &mut W) -> Vec3<T> {
+    if world.refracts {
+        return trace_refraction(world, primary, witness);
+    }
     let mut ray = primary;
     let mut hit = nearest_hit(world, &ray, None, world.primary);
     witness.nearest(world, &ray, None, &world.primary, hit.as_ref());

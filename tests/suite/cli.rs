@@ -246,7 +246,7 @@ fn stats_tell_device_effects_rays_and_times() {
     for time in ["parse_ms", "prepare_ms", "compile_ms", "render_ms", "read_back_ms", "write_ms", "total_ms"] {
         assert!(stats[time].is_f64(), "{time}");
     }
-    assert_exit(&place.run("render --device cpu --stats --explain scene.txt"), 0, "effects (reflection depth 0)");
+    assert_exit(&place.run("render --device cpu --stats --explain scene.txt"), 0, "effects (depth 0)");
 }
 
 #[test]

@@ -1,0 +1,79 @@
+//! A pixel's colour where something refracts: the primary ray and its tree of reflections and refractions; read it beside
+//! `shaders/trace_refraction.wgsl`.
+
+use super::intersect::{Own, Ray, nearest_hit};
+use super::real::Real;
+use super::refract::{Snell, refraction_ray};
+use super::scene::World;
+use super::shade::{local_color, surface_at};
+use super::trace::{MAX_THROUGHPUT, reflection_ray};
+use super::vec3::Vec3;
+use super::witness::Witness;
+
+/// A refraction ray that waits until the reflected ray beside it has been followed to its end.
+struct Pending<T> {
+    ray: Ray<T>,
+    own: Own<T>,
+    throughput: T,
+    depth: u32,
+}
+
+/// The unclamped colour seen along `primary`: depth-first, the reflected ray first. Each depth leaves one refraction ray
+/// behind at the most, so that no more than `max_depth` wait.
+pub(super) fn trace_refraction<T: Real, W: Witness<T>>(world: &World<T>, primary: Ray<T>, witness: &mut W) -> Vec3<T> {
+    let mut ray = primary;
+    let mut hit = nearest_hit(world, &ray, None, world.primary);
+    witness.nearest(world, &ray, None, &world.primary, hit.as_ref());
+    if hit.is_none() {
+        return world.background;
+    }
+    let mut color = Vec3::ZERO;
+    let mut throughput = T::ONE;
+    let mut depth = 0;
+    let mut pending: Vec<Pending<T>> = Vec::new();
+    let mut is_refracted = false;
+    loop {
+        if let Some(found) = hit {
+            let surface = surface_at(world, &ray, &found);
+            witness.surface(world, &ray, &found, &surface);
+            color += local_color(world, &surface, witness) * throughput;
+
+            let material = &world.materials[surface.sphere];
+            if depth < world.max_depth {
+                if material.kt != T::ZERO {
+                    let snell = Snell::at(world, &surface);
+                    let (ray, own) = refraction_ray(&ray, &surface, &snell);
+                    let throughput = weight(throughput, material.kt);
+                    witness.refracted(world, &surface, &snell, throughput);
+                    pending.push(Pending { ray, own, throughput, depth: depth + 1 });
+                }
+                if material.kr != T::ZERO {
+                    depth += 1;
+                    throughput = weight(throughput, material.kr);
+                    ray = reflection_ray(&surface);
+                    let own = world.skip_self.then_some(&surface.own);
+                    hit = nearest_hit(world, &ray, own, world.reflection);
+                    is_refracted = false;
+                    witness.reflected(throughput);
+                    witness.nearest(world, &ray, own, &world.reflection, hit.as_ref());
+                    continue;
+                }
+            }
+        } else if is_refracted {
+            // One looks through glass at the background; a reflection ray that hits nothing adds black.
+            color += world.background * throughput;
+        }
+        let Some(next) = pending.pop() else { return color };
+        (ray, throughput, depth) = (next.ray, next.throughput, next.depth);
+        hit = nearest_hit(world, &ray, Some(&next.own), world.refraction);
+        is_refracted = true;
+        witness.resumed();
+        witness.nearest(world, &ray, Some(&next.own), &world.refraction, hit.as_ref());
+    }
+}
+
+/// The weight of a ray that `coefficient` of what has this weight follows.
+fn weight<T: Real>(throughput: T, coefficient: T) -> T {
+    let product = throughput * coefficient;
+    if product > T::from_f64(MAX_THROUGHPUT) { T::from_f64(MAX_THROUGHPUT) } else { product }
+}
