@@ -1,17 +1,5 @@
 // A pixel's colour: the primary ray and its chain of reflections; read it beside src/cpu/trace.rs.
 
-// The mirrored view ray, of unit length.
-fn reflection_ray(surface: Surface) -> Ray {
-    let n_dot_v = dot(surface.normal, surface.view);
-    return ray_from(surface.position, surface.normal * (n_dot_v + n_dot_v) - surface.view);
-}
-
-// Not the index of any shape: a primary ray leaves no sphere.
-const NO_SHAPE: u32 = 0xffffffffu;
-
-// Mirrors with Kr > 1 amplify no further, or products would overflow; whatever is lit at all is white long before.
-const MAX_THROUGHPUT: real = real(1e30);
-
 // The unclamped colour seen along the ray.
 fn trace(primary: Ray) -> vec3r {
     var own = Own(NO_SHAPE, false, vec3r());

@@ -58,6 +58,7 @@ pub trait Layout {
     type Shape: Pod;
     type Material: Pod;
     type Light: Pod;
+    type Glass: Pod;
     /// The scalar.
     type Real: Pod;
     /// The nearest scalar.
@@ -68,6 +69,7 @@ pub trait Layout {
     fn shape(values: &ShapeValues) -> Self::Shape;
     fn material(sphere: &scene::Sphere, scale: DVec3) -> Self::Material;
     fn light(light: &scene::Light) -> Self::Light;
+    fn glass(sphere: &scene::Sphere) -> Self::Glass;
 }
 
 /// Declares the structs for one scalar, with the numbers of `u32` that pad each.
@@ -165,6 +167,18 @@ macro_rules! layout {
                 }
             }
 
+            shader_struct! {
+                /// What only refraction reads of a sphere.
+                Glass {
+                    /// Transmission coefficient.
+                    kt: $real,
+                    /// Index of refraction of the inside relative to the outside.
+                    eta: $real,
+                    /// 1/`eta`.
+                    inv_eta: $real,
+                }
+            }
+
             /// Packs into these structs; every number is rounded once, to the nearest.
             #[derive(Debug, Clone, Copy)]
             pub struct Layout;
@@ -174,6 +188,7 @@ macro_rules! layout {
                 type Shape = Shape;
                 type Material = Material;
                 type Light = Light;
+                type Glass = Glass;
                 type Real = $real;
 
                 fn real(x: f64) -> $real {
@@ -231,6 +246,14 @@ macro_rules! layout {
                         ..Light::zeroed()
                     }
                 }
+
+                fn glass(sphere: &scene::Sphere) -> Glass {
+                    Glass {
+                        kt: Self::real(sphere.kt),
+                        eta: Self::real(sphere.eta),
+                        inv_eta: Self::real(1.0 / sphere.eta),
+                    }
+                }
             }
 
             fn vector(v: DVec3) -> [$real; 3] {
@@ -254,6 +277,7 @@ const _: () = {
     assert!(size_of::<single::Shape>() == 32 && std::mem::offset_of!(single::Shape, inv_scale) == 16);
     assert!(size_of::<single::Material>() == 48 && std::mem::offset_of!(single::Material, ks) == 32);
     assert!(size_of::<single::Light>() == 32 && std::mem::offset_of!(single::Light, intensity) == 16);
+    assert!(size_of::<single::Glass>() == 12 && size_of::<double::Glass>() == 24);
     assert!(size_of::<double::Params>() == 128 && std::mem::offset_of!(double::Params, sphere_count) == 96);
     assert!(size_of::<double::Shape>() == 64 && std::mem::offset_of!(double::Shape, inv_scale) == 32);
     assert!(size_of::<double::Material>() == 96 && std::mem::offset_of!(double::Material, ks) == 64);

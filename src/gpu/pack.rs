@@ -20,6 +20,8 @@ pub(super) struct Packed {
     pub(super) shapes: Vec<u8>,
     /// One per sphere.
     pub(super) materials: Vec<u8>,
+    /// One per sphere; empty where nothing refracts.
+    pub(super) glasses: Vec<u8>,
     /// One per light.
     pub(super) lights: Vec<u8>,
     /// x of each sample column on the image plane, on to the end of the last tile, and then what rounding took from each.
@@ -55,8 +57,8 @@ fn pack<L: Layout>(scene: &Scene, settings: &Settings, effects: &Effects, with_l
     let camera = Camera::new(scene, settings);
     let ellipsoids = ellipsoids(scene, on(Effect::Ellipsoids));
     let indices = match settings.secondary {
-        Secondary::SkipSelf => shape_indices(&ellipsoids),
-        Secondary::Epsilon { .. } => (0..ellipsoids.len() as u32).collect(),
+        Secondary::Epsilon { .. } if !on(Effect::Refraction) => (0..ellipsoids.len() as u32).collect(),
+        _ => shape_indices(&ellipsoids),
     };
     let shapes = shape_values(&ellipsoids, indices, on(Effect::Ellipsoids));
     let columns: Vec<f64> = (0..scene.width.next_multiple_of(TILE) * settings.samples).map(|i| camera.x(i)).collect();
@@ -88,6 +90,7 @@ fn pack<L: Layout>(scene: &Scene, settings: &Settings, effects: &Effects, with_l
         params: bytes([L::params(&params)]),
         shapes: bytes(shapes.iter().map(L::shape)),
         materials: bytes(scene.spheres.iter().zip(&ellipsoids).map(|(s, e)| L::material(s, scale(e)))),
+        glasses: bytes(scene.spheres.iter().filter(|_| on(Effect::Refraction)).map(L::glass)),
         lights: bytes(scene.lights.iter().map(L::light)),
         columns: reals(&columns),
         rows: reals(&rows),

@@ -1,9 +1,11 @@
 //! From effects to a compiled kernel: the only place that sets the constants of `shaders/effects.wgsl`.
 
+use std::num::NonZeroU32;
+
 use super::device::Gpu;
 use super::error::Error;
 use super::shader::{Kernel, Module};
-use crate::effects::{Effect, EffectSet};
+use crate::effects::{Effect, EffectSet, Effects};
 use crate::scene::Scene;
 use crate::settings::{Secondary, Settings, Specular};
 
@@ -18,7 +20,9 @@ pub struct Specialisation {
     pub kernel: Kernel,
     /// The effects that it simulates.
     pub effects: EffectSet,
-    /// Whether secondary rays skip their own sphere.
+    /// Where something refracts, how many rays wait at the most.
+    pub refraction: Option<NonZeroU32>,
+    /// Whether shadow and reflection rays skip their own sphere.
     pub skip_self: bool,
     /// Whether the specular term is (N·H)ⁿ.
     pub blinn: bool,
@@ -32,11 +36,12 @@ pub struct Specialisation {
 
 impl Specialisation {
     /// For `scene` with `effects` under `settings`.
-    pub fn new(scene: &Scene, settings: &Settings, effects: EffectSet, kernel: Kernel) -> Self {
+    pub fn new(scene: &Scene, settings: &Settings, effects: &Effects, kernel: Kernel) -> Self {
         let few = scene.spheres.len().max(scene.lights.len()) <= MAX_FEW;
         Self {
             kernel,
-            effects,
+            effects: effects.set,
+            refraction: NonZeroU32::new(effects.waiting(scene)),
             skip_self: settings.secondary == Secondary::SkipSelf,
             blinn: settings.specular == Specular::Blinn,
             few: few.then_some([scene.spheres.len() as u32, scene.lights.len() as u32]),
@@ -56,11 +61,14 @@ impl Specialisation {
             ("REFLECTIONS", on(Effect::Reflections)),
             ("SHELLS", on(Effect::Shells)),
             ("ELLIPSOIDS", on(Effect::Ellipsoids)),
-            ("SKIP_SELF", f64::from(self.skip_self)),
+            ("SKIP_SELF", f64::from(self.skip_self || self.refraction.is_some())),
             ("BLINN", f64::from(self.blinn)),
             ("SAMPLES", f64::from(self.samples)),
             ("COUNT_RAYS", f64::from(self.count_rays)),
         ];
+        if self.refraction.is_some() {
+            constants.push(("SKIP_SELF_ALWAYS", f64::from(self.skip_self)));
+        }
         if let Some([spheres, lights]) = self.few {
             constants.extend([("SPHERE_COUNT", f64::from(spheres)), ("LIGHT_COUNT", f64::from(lights))]);
         }
@@ -73,7 +81,11 @@ pub const ENTRY_POINT: &str = "render_tiles";
 
 /// Compiles the render kernel.
 pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<wgpu::ComputePipeline, Error> {
-    let module = gpu.shader_module(&Module::render(specialisation.kernel, specialisation.few.is_some()))?;
+    let module = gpu.shader_module(&Module::render(
+        specialisation.kernel,
+        specialisation.few.is_some(),
+        specialisation.refraction,
+    ))?;
     gpu.checked("compiling the kernel", || {
         gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(ENTRY_POINT),

@@ -252,6 +252,7 @@ impl<'a> Prober<'a> {
             kernel: self.kernel,
             effects: EffectSet::ALL,
             skip_self: true,
+            refraction: None,
             blinn: false,
             few: None,
             count_rays: false,

@@ -100,7 +100,9 @@ impl<'a> GpuRenderer<'a> {
             * (scene.spheres.len() as u64 + 1)
             * (1 + scene.lights.len() as u64 * u64::from(effects.set.has(Effect::Shadows)))
             * (1 + u64::from(effects.depth));
-        let first = FIRST_DISPATCH_TESTS / (tests_per_pixel * TILE_PIXELS as u64);
+        // A tree of rays doubles with each bounce where rays can wait.
+        let tests_per_pixel = tests_per_pixel.saturating_mul(1 << effects.waiting(scene).min(32));
+        let first = FIRST_DISPATCH_TESTS / tests_per_pixel.saturating_mul(TILE_PIXELS as u64);
         Ok(Self {
             gpu,
             cover: Cover::new(scene, &camera, effects.set.has(Effect::Ellipsoids)),
@@ -109,7 +111,7 @@ impl<'a> GpuRenderer<'a> {
             picture_tiles: u64::from(scene.width.div_ceil(TILE)) * u64::from(scene.height.div_ceil(TILE)),
             background: settings.quantize.levels(scene.background),
             kernel: None,
-            kernel_inputs: Inputs { packed, specialisation: Specialisation::new(scene, settings, effects.set, kernel) },
+            kernel_inputs: Inputs { packed, specialisation: Specialisation::new(scene, settings, effects, kernel) },
             tiles_per_dispatch: first.clamp(1, u64::from(MAX_DISPATCH_TILES)) as u32,
             times: DeviceTimes::default(),
             timestamps: None,
@@ -283,6 +285,9 @@ impl Kernel {
             (4, filled(&packed.columns, storage)),
             (5, filled(&packed.rows, storage)),
         ];
+        if specialisation.refraction.is_some() {
+            inputs.push((11, filled(&packed.glasses, storage)));
+        }
         if let Some(low) = &packed.low {
             inputs.extend([(9, looped(&low.shapes, packed.shape_size)), (10, looped(&low.lights, packed.light_size))]);
         }

@@ -1,0 +1,83 @@
+// In place of trace.wgsl where something refracts: the primary ray and its tree of reflections and refractions; read it beside
+// src/cpu/trace_refraction.rs. The host puts before it how many rays can wait: const MAX_WAITING.
+
+// Shadow and reflection rays meet their own sphere by its analytic other root only. Refraction rays always do, so SKIP_SELF is
+// true whatever the convention.
+override SKIP_SELF_ALWAYS: bool = false;
+
+// A refraction ray that waits until the reflected ray beside it has been followed to its end.
+struct Waiting {
+    ray: Ray,
+    own: Own,
+    throughput: real,
+    depth: u32,
+}
+
+// The unclamped colour seen along the ray: depth-first, the reflected ray first. Each depth leaves one refraction ray behind
+// at the most.
+fn trace(primary: Ray) -> vec3r {
+    var ray = primary;
+    var own = Own(NO_SHAPE, false, vec3r());
+    var hit = nearest_hit(ray, own, primary_range());
+    if !hit.found {
+        return params.background;
+    }
+    var color = vec3r();
+    var throughput = real(1.0);
+    var depth = 0u;
+    var waiting: array<Waiting, MAX_WAITING>;
+    var count = 0u;
+    var is_refracted = false;
+    loop {
+        if hit.found {
+            var surface = surface_at(ray, hit);
+            let wall = surface.own;
+            if !SKIP_SELF_ALWAYS {
+                surface.own.shape = NO_SHAPE;
+            }
+            color += local_color(surface) * throughput;
+
+            if depth < params.max_depth {
+                let kt = glasses[surface.sphere].kt;
+                if kt != real(0.0) {
+                    var through = surface;
+                    through.own = wall;
+                    let refracted = refraction_ray(ray, through);
+                    let weight = min(throughput * kt, MAX_THROUGHPUT);
+                    waiting[count] = Waiting(refracted.ray, refracted.own, weight, depth + 1u);
+                    count++;
+                }
+                let kr = materials[surface.sphere].kr;
+                if REFLECTIONS && kr != real(0.0) {
+                    depth += 1u;
+                    throughput = min(throughput * kr, MAX_THROUGHPUT);
+                    ray = reflection_ray(surface);
+                    own = surface.own;
+                    is_refracted = false;
+                    if COUNT_RAYS {
+                        reflection_rays++;
+                    }
+                    hit = nearest_hit(ray, own, reflection_range());
+                    continue;
+                }
+            }
+        } else if is_refracted {
+            // One looks through glass at the background; a reflection ray that hits nothing adds black.
+            color += params.background * throughput;
+        }
+        if count == 0u {
+            return color;
+        }
+        count--;
+        ray = waiting[count].ray;
+        own = waiting[count].own;
+        throughput = waiting[count].throughput;
+        depth = waiting[count].depth;
+        is_refracted = true;
+        if COUNT_RAYS {
+            reflection_rays++;
+        }
+        hit = nearest_hit(ray, own, refraction_range());
+    }
+    return color;
+}
