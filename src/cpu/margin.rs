@@ -135,6 +135,8 @@ struct Cone {
     color: DVec3,
     /// N·L of the light in hand and its error.
     light: (f64, f64),
+    /// Whether light changes the colour of the surface in hand.
+    shows_light: bool,
     /// Rays so far whose colours are summed.
     rays: f64,
     decision: Option<Decision>,
@@ -150,6 +152,7 @@ impl Cone {
             normal: 0.0,
             color: DVec3::ZERO,
             light: (0.0, 0.0),
+            shows_light: true,
             rays: 1.0,
             decision: None,
         }
@@ -257,24 +260,26 @@ impl Witness<f64> for Cone {
         }
         self.path.position = position;
         self.path.own = Some(hit.sphere);
-        // The greatest curvature of an ellipsoid is its longest semi-axis over the square of its shortest.
-        let shortest = shape.radius / largest(shape.inv_scale);
-        let longest = size(world, hit.sphere);
-        self.normal = self.path.position * longest / (shortest * shortest) + STEPS * self.u;
+        self.normal = normal_error(shape, surface.own.local, self.path.position) + STEPS * self.u;
     }
 
-    fn lit(&mut self, _world: &World<f64>, surface: &Surface<f64>, light: &PointLight<f64>, n_dot_l: f64) {
+    fn lit(&mut self, world: &World<f64>, surface: &Surface<f64>, light: &PointLight<f64>, n_dot_l: f64) {
         let distance = length(light.position - surface.position);
         let error = self.normal
             + (self.path.position + self.g * length(light.position)) / distance.max(f64::MIN_POSITIVE)
             + STEPS * self.u;
+        let material = &world.materials[surface.sphere];
+        self.shows_light = material.kd != 0.0 || material.ks != 0.0;
         self.light = (n_dot_l, error);
-        if n_dot_l.abs() <= error {
+        if self.shows_light && n_dot_l.abs() <= error {
             self.note(Decision::Terminator);
         }
     }
 
     fn shadow(&mut self, world: &World<f64>, ray: &Ray<f64>, own: Option<&Own<f64>>) {
+        if !self.shows_light {
+            return;
+        }
         let shadow = [Decision::ShadowEdge; 3];
         let direction = self.path.direction;
         self.path.direction = self.light.1;
@@ -340,6 +345,27 @@ impl Witness<f64> for Cone {
         self.path = self.waiting.pop().unwrap_or(self.path);
         self.rays += 1.0;
     }
+}
+
+/// Error of the unit normal at `local`, in object space, where the place is off by `position` along the surface.
+///
+/// The normal is along the gradient D·P with D the diagonal matrix of 1/s² and P the place relative to the centre: linear in
+/// P. Along the surface D stretches by the greater eigenvalue λ of its part in the tangent plane; the surface curves away from
+/// that plane by λ/(2|D·P|)·`position`², which D stretches by no more than its greatest entry.
+fn normal_error(shape: &Shape<f64>, local: Vec3<f64>, position: f64) -> f64 {
+    // Both in units of 1/r².
+    let gradient = local * shape.inv_scale;
+    let length = length(gradient);
+    let d = shape.inv_scale * shape.inv_scale;
+    let n = gradient * (1.0 / length);
+    let n = n * n;
+    let trace = d.x * (n.y + n.z) + d.y * (n.z + n.x) + d.z * (n.x + n.y);
+    let determinant = n.x * d.y * d.z + n.y * d.z * d.x + n.z * d.x * d.y;
+    let stretch = 0.5 * (trace + (trace * trace - 4.0 * determinant).max(0.0).sqrt());
+    let sideways = stretch * position;
+    let error = (sideways + 0.5 * largest(d) * (sideways / length) * position) / length;
+    // An error as long as the gradient can turn it anywhere.
+    if error < 0.5 { error / (1.0 - error) } else { 2.0 }
 }
 
 /// Cosine of the angle at which a ray meets a sphere's surface, in object space.

@@ -143,6 +143,7 @@ impl Shared {
         let (batch, lit) = match case.kind {
             Kind::Rays(generate) => (generate(&mut random, count), Vec::new()),
             Kind::Lit(generate) => generate(&mut random, count),
+            Kind::Refraction(generate) => (generate(&mut random, count), Vec::new()),
             _ => Default::default(),
         };
         Self { random, count, batch: batch.in_range(), lit, truths: [None, None] }
@@ -175,6 +176,7 @@ impl Shared {
                 Ok(Some(judge(&self.batch, &answers, truth, given, band(tier))))
             }
             Kind::Lit(_) => self.measure_light(prober, given).map(Some),
+            Kind::Refraction(_) => special::refraction(prober, given, &self.batch).map(Some),
             Kind::ZeroScale => picture(|_, _| Ok(special::zero_scale())),
             Kind::NegativeScale => special::negative_scale(prober, &mut random, self.count).map(Some),
             Kind::BitPatterns => special::bit_patterns(prober, &mut random, 2 * self.count).map(Some),

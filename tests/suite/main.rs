@@ -15,6 +15,7 @@ mod keys;
 mod oracle;
 mod parse;
 mod pictures;
+mod refraction;
 mod shaders;
 mod stress;
 mod study;

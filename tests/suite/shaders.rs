@@ -1,6 +1,8 @@
 //! The composed WGSL: every effect set is valid, and the structs are those of the host.
 
-use trueray::effects::{EffectSet, Effects, Request};
+use std::num::NonZeroU32;
+
+use trueray::effects::{Effect, EffectSet, Effects, Request};
 use trueray::gpu::layout::{double, single};
 use trueray::gpu::{ENTRY_POINT, Kernel, Module, SelfTest, Specialisation, echo_layout};
 
@@ -22,18 +24,30 @@ fn validate(module: &naga::Module) -> naga::valid::ModuleInfo {
 #[test]
 fn every_effect_set_is_valid() {
     for (kernel, few) in kinds() {
-        let module = Module::render(kernel, few.is_some()).parse().unwrap();
-        let info = validate(&module);
+        let modules = [None, NonZeroU32::new(3)].map(|refraction| {
+            let module = Module::render(kernel, few.is_some(), refraction).parse().unwrap();
+            let info = validate(&module);
+            (refraction, module, info)
+        });
         for effects in EffectSet::every() {
+            let (refraction, module, info) = &modules[usize::from(effects.has(Effect::Refraction))];
             for flags in 0..8 {
                 let [skip_self, blinn, count_rays] = [1, 2, 4].map(|bit| flags & bit != 0);
-                let specialisation =
-                    Specialisation { kernel, effects, skip_self, blinn, few, samples: 1 + flags / 4, count_rays };
+                let specialisation = Specialisation {
+                    kernel,
+                    effects,
+                    refraction: *refraction,
+                    skip_self,
+                    blinn,
+                    few,
+                    samples: 1 + flags / 4,
+                    count_rays,
+                };
                 let constants = specialisation.constants().into_iter().map(|(name, value)| (name.to_owned(), value));
                 let constants = constants.collect();
                 let entry_point = Some((naga::ShaderStage::Compute, ENTRY_POINT));
                 let (specialised, _) =
-                    naga::back::pipeline_constants::process_overrides(&module, &info, entry_point, &constants).unwrap();
+                    naga::back::pipeline_constants::process_overrides(module, info, entry_point, &constants).unwrap();
                 validate(&specialised);
             }
         }
@@ -43,12 +57,13 @@ fn every_effect_set_is_valid() {
 /// A constant that the shader does not declare would be ignored silently by the validation above.
 #[test]
 fn every_constant_is_an_override_and_every_override_is_set() {
-    for (kernel, few) in kinds() {
-        let module = Module::render(kernel, few.is_some()).parse().unwrap();
+    for ((kernel, few), refraction) in kinds().flat_map(|kind| [(kind, None), (kind, NonZeroU32::new(1))]) {
+        let module = Module::render(kernel, few.is_some(), refraction).parse().unwrap();
         let mut declared: Vec<_> = module.overrides.iter().map(|(_, o)| o.name.clone().unwrap()).collect();
         let specialisation = Specialisation {
             kernel,
             effects: EffectSet::ALL,
+            refraction,
             skip_self: true,
             blinn: true,
             few,
@@ -59,6 +74,21 @@ fn every_constant_is_an_override_and_every_override_is_set() {
         declared.sort();
         set.sort();
         assert_eq!(declared, set);
+    }
+}
+
+/// Scenes without Kt compile what they did before there was any refraction.
+#[test]
+fn only_refraction_brings_its_text() {
+    for (kernel, few) in kinds() {
+        let [without, with] = [None, NonZeroU32::new(3)].map(|waiting| Module::render(kernel, few.is_some(), waiting));
+        assert!(!without.text.contains("glasses") && !without.text.contains("MAX_WAITING"));
+        assert!(with.text.contains("const MAX_WAITING: u32 = 3u;"));
+        let (file, line) =
+            with.place(with.text.lines().position(|line| line.contains("fn trace(")).unwrap() as u32 + 1);
+        let text = std::fs::read_to_string(crate::support::root().join(&file)).unwrap();
+        assert_eq!(file, "shaders/trace_refraction.wgsl");
+        assert!(text.lines().nth(line as usize - 1).unwrap().contains("fn trace("));
     }
 }
 
@@ -74,6 +104,7 @@ fn structs_lie_in_memory_as_the_shader_reads_them() {
             ("Shape", single::Shape::FIELDS, size_of::<single::Shape>()),
             ("Material", single::Material::FIELDS, size_of::<single::Material>()),
             ("Light", single::Light::FIELDS, size_of::<single::Light>()),
+            ("Glass", single::Glass::FIELDS, size_of::<single::Glass>()),
         ],
     );
     assert_layout(
@@ -83,12 +114,13 @@ fn structs_lie_in_memory_as_the_shader_reads_them() {
             ("Shape", double::Shape::FIELDS, size_of::<double::Shape>()),
             ("Material", double::Material::FIELDS, size_of::<double::Material>()),
             ("Light", double::Light::FIELDS, size_of::<double::Light>()),
+            ("Glass", double::Glass::FIELDS, size_of::<double::Glass>()),
         ],
     );
 }
 
-fn assert_layout(tier: Tier, structs: [(&str, Fields, usize); 4]) {
-    let module = Module::render(Kernel::Tier(tier), false).parse().unwrap();
+fn assert_layout(tier: Tier, structs: [(&str, Fields, usize); 5]) {
+    let module = Module::render(Kernel::Tier(tier), false, NonZeroU32::new(3)).parse().unwrap();
     for (name, fields, size) in structs {
         let (_, found) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).unwrap();
         let naga::TypeInner::Struct { members, span } = &found.inner else { panic!("{name}") };
@@ -102,7 +134,7 @@ fn assert_layout(tier: Tier, structs: [(&str, Fields, usize); 4]) {
 #[test]
 fn bindings_are_numbered_without_gaps() {
     for (kernel, few) in kinds() {
-        let module = Module::render(kernel, few.is_some()).parse().unwrap();
+        let module = Module::render(kernel, few.is_some(), NonZeroU32::new(3)).parse().unwrap();
         let mut bindings: Vec<_> =
             module.global_variables.iter().filter_map(|(_, v)| Some((v.binding?.binding, v.name.clone()?))).collect();
         bindings.sort();
@@ -119,6 +151,7 @@ fn bindings_are_numbered_without_gaps() {
             "ray_counts",
             "shapes_low",
             "lights_low",
+            "glasses",
         ];
         assert_eq!(names, expected);
         assert!(bindings.iter().enumerate().all(|(i, (binding, _))| i as u32 == *binding));
@@ -127,7 +160,7 @@ fn bindings_are_numbered_without_gaps() {
 
 #[test]
 fn an_error_in_the_shader_names_its_file_and_line() {
-    let mut module = Module::render(Kernel::Tier(Tier::Fast), false);
+    let mut module = Module::render(Kernel::Tier(Tier::Fast), false, None);
     let line = 1 + module.text.lines().position(|line| line.contains("fn trace(")).unwrap() as u32;
     let (file, line_in_file) = module.place(line);
     assert_eq!(file, "shaders/trace.wgsl");
