@@ -141,9 +141,8 @@ struct Shared {
 impl Shared {
     fn new(case: &Case, mut random: Random, count: usize) -> Self {
         let (batch, lit) = match case.kind {
-            Kind::Rays(generate) => (generate(&mut random, count), Vec::new()),
+            Kind::Rays(generate) | Kind::Refraction(generate) => (generate(&mut random, count), Vec::new()),
             Kind::Lit(generate) => generate(&mut random, count),
-            Kind::Refraction(generate) => (generate(&mut random, count), Vec::new()),
             _ => Default::default(),
         };
         Self { random, count, batch: batch.in_range(), lit, truths: [None, None] }
