@@ -99,6 +99,7 @@ pub(crate) struct Range<T> {
 }
 
 /// The least root of one sphere that counts, and whether it is the greater one.
+#[inline]
 pub(crate) fn accepted_root<T: Real>(
     ray: &Ray<T>,
     shape: &Shape<T>,

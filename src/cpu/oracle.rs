@@ -9,7 +9,7 @@ use super::dd::Dd;
 use super::intersect::{Hit, Own, Range, Ray, approach, nearest_hit, roots};
 use super::real::Real;
 use super::refract::{Snell, refraction_ray};
-use super::scene::{Material, Shape, World};
+use super::scene::{Glass, Material, Shape, World};
 use super::shade::surface_at;
 use super::vec3::Vec3;
 use crate::settings::Specular;
@@ -113,14 +113,16 @@ fn glass_world<T: Real>(bodies: &[Body]) -> World<T> {
         ks: T::ZERO,
         kr: T::ZERO,
         n: T::ONE,
-        kt: T::ONE,
-        eta: T::from_f64(body.eta),
-        inv_eta: T::ONE / T::from_f64(body.eta),
+    };
+    let glass = |body: &Body| {
+        let eta = T::from_f64(body.eta);
+        Glass { kt: T::ONE, eta, inv_eta: T::ONE / eta }
     };
     let range = Range { t_min: T::ZERO, t_max: T::FAR, greater: true };
     World {
         shapes: bodies.iter().enumerate().map(shape).collect(),
         materials: bodies.iter().map(material).collect(),
+        glasses: bodies.iter().map(glass).collect(),
         lights: Vec::new(),
         ambient: Vec3::ZERO,
         background: Vec3::ZERO,

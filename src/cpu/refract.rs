@@ -35,9 +35,9 @@ impl<T: Real> Snell<T> {
 
     /// At `surface`: entering where it is seen from outside, leaving where it is seen from inside.
     pub(crate) fn at(world: &World<T>, surface: &Surface<T>) -> Self {
-        let material = &world.materials[surface.sphere];
+        let glass = &world.glasses[surface.sphere];
         let cosine = surface.normal.dot(surface.view);
-        let ratio = if surface.own.inside { material.eta } else { material.inv_eta };
+        let ratio = if surface.own.inside { glass.eta } else { glass.inv_eta };
         Self::new(ratio, if cosine > T::ZERO { cosine } else { T::ZERO })
     }
 

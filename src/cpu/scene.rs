@@ -40,6 +40,11 @@ pub(crate) struct Material<T> {
     pub ks: T,
     pub kr: T,
     pub n: T,
+}
+
+/// One sphere: what only refraction reads.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Glass<T> {
     pub kt: T,
     /// Index of refraction of the inside relative to the outside, and one over it.
     pub eta: T,
@@ -58,6 +63,8 @@ pub(crate) struct PointLight<T> {
 pub(crate) struct World<T> {
     pub shapes: Vec<Shape<T>>,
     pub materials: Vec<Material<T>>,
+    /// Empty where nothing refracts.
+    pub glasses: Vec<Glass<T>>,
     pub lights: Vec<PointLight<T>>,
     pub ambient: Vec3<T>,
     pub background: Vec3<T>,
@@ -94,6 +101,7 @@ impl<T: Real> World<T> {
         Self {
             shapes: ellipsoids.iter().enumerate().map(shape).collect(),
             materials: scene.spheres.iter().zip(&ellipsoids).map(|(s, e)| Material::new(s, e, effects.set)).collect(),
+            glasses: scene.spheres.iter().filter(|_| on(Effect::Refraction)).map(Glass::new).collect(),
             lights: scene.lights.iter().map(PointLight::new).collect(),
             ambient: Vec3::from_f64(scene.ambient),
             background: Vec3::from_f64(scene.background),
@@ -121,10 +129,14 @@ impl<T: Real> Material<T> {
             ks: term(Effect::Specular, sphere.ks),
             kr: term(Effect::Reflections, sphere.kr),
             n: T::from_f64(sphere.n),
-            kt: term(Effect::Refraction, sphere.kt),
-            eta: T::from_f64(sphere.eta),
-            inv_eta: T::ONE / T::from_f64(sphere.eta),
         }
+    }
+}
+
+impl<T: Real> Glass<T> {
+    fn new(sphere: &Sphere) -> Self {
+        let eta = T::from_f64(sphere.eta);
+        Self { kt: T::from_f64(sphere.kt), eta, inv_eta: T::ONE / eta }
     }
 }
 

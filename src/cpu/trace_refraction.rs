@@ -20,6 +20,7 @@ struct Pending<T> {
 
 /// The unclamped colour seen along `primary`: depth-first, the reflected ray first. Each depth leaves one refraction ray
 /// behind at the most, so that no more than `max_depth` wait.
+#[inline(never)]
 pub(super) fn trace_refraction<T: Real, W: Witness<T>>(world: &World<T>, primary: Ray<T>, witness: &mut W) -> Vec3<T> {
     let mut ray = primary;
     let mut hit = nearest_hit(world, &ray, None, world.primary);
@@ -38,18 +39,19 @@ pub(super) fn trace_refraction<T: Real, W: Witness<T>>(world: &World<T>, primary
             witness.surface(world, &ray, &found, &surface);
             color += local_color(world, &surface, witness) * throughput;
 
-            let material = &world.materials[surface.sphere];
             if depth < world.max_depth {
-                if material.kt != T::ZERO {
+                let kt = world.glasses[surface.sphere].kt;
+                if kt != T::ZERO {
                     let snell = Snell::at(world, &surface);
                     let (ray, own) = refraction_ray(&ray, &surface, &snell);
-                    let throughput = weight(throughput, material.kt);
+                    let throughput = weight(throughput, kt);
                     witness.refracted(world, &surface, &snell, throughput);
                     pending.push(Pending { ray, own, throughput, depth: depth + 1 });
                 }
-                if material.kr != T::ZERO {
+                let kr = world.materials[surface.sphere].kr;
+                if kr != T::ZERO {
                     depth += 1;
-                    throughput = weight(throughput, material.kr);
+                    throughput = weight(throughput, kr);
                     ray = reflection_ray(&surface);
                     let own = world.skip_self.then_some(&surface.own);
                     hit = nearest_hit(world, &ray, own, world.reflection);
