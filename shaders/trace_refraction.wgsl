@@ -18,17 +18,16 @@ struct Waiting {
 fn trace(primary: Ray) -> vec3r {
     var ray = primary;
     var own = Own(NO_SHAPE, false, vec3r());
-    var hit = nearest_hit(ray, own, primary_range());
-    if !hit.found {
-        return params.background;
-    }
+    var range = primary_range();
     var color = vec3r();
     var throughput = real(1.0);
     var depth = 0u;
     var waiting: array<Waiting, MAX_WAITING>;
     var count = 0u;
-    var is_refracted = false;
+    // One looks through glass at the background; a reflection ray that hits nothing adds black.
+    var shows_background = true;
     loop {
+        let hit = nearest_hit(ray, own, range);
         if hit.found {
             var surface = surface_at(ray, hit);
             let wall = surface.own;
@@ -53,31 +52,30 @@ fn trace(primary: Ray) -> vec3r {
                     throughput = min(throughput * kr, MAX_THROUGHPUT);
                     ray = reflection_ray(surface);
                     own = surface.own;
-                    is_refracted = false;
+                    range = reflection_range();
+                    shows_background = false;
                     if COUNT_RAYS {
                         reflection_rays++;
                     }
-                    hit = nearest_hit(ray, own, reflection_range());
                     continue;
                 }
             }
-        } else if is_refracted {
-            // One looks through glass at the background; a reflection ray that hits nothing adds black.
+        } else if shows_background {
             color += params.background * throughput;
         }
         if count == 0u {
-            return color;
+            break;
         }
         count--;
         ray = waiting[count].ray;
         own = waiting[count].own;
+        range = refraction_range();
         throughput = waiting[count].throughput;
         depth = waiting[count].depth;
-        is_refracted = true;
+        shows_background = true;
         if COUNT_RAYS {
             reflection_rays++;
         }
-        hit = nearest_hit(ray, own, refraction_range());
     }
     return color;
 }

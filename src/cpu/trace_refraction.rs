@@ -22,18 +22,16 @@ struct Pending<T> {
 /// behind at the most, so that no more than `max_depth` wait.
 #[inline(never)]
 pub(super) fn trace_refraction<T: Real, W: Witness<T>>(world: &World<T>, primary: Ray<T>, witness: &mut W) -> Vec3<T> {
-    let mut ray = primary;
-    let mut hit = nearest_hit(world, &ray, None, world.primary);
-    witness.nearest(world, &ray, None, &world.primary, hit.as_ref());
-    if hit.is_none() {
-        return world.background;
-    }
+    let (mut ray, mut own, mut range) = (primary, None, world.primary);
     let mut color = Vec3::ZERO;
     let mut throughput = T::ONE;
     let mut depth = 0;
     let mut pending: Vec<Pending<T>> = Vec::new();
-    let mut is_refracted = false;
+    // One looks through glass at the background; a reflection ray that hits nothing adds black.
+    let mut shows_background = true;
     loop {
+        let hit = nearest_hit(world, &ray, own.as_ref(), range);
+        witness.nearest(world, &ray, own.as_ref(), &range, hit.as_ref());
         if let Some(found) = hit {
             let surface = surface_at(world, &ray, &found);
             witness.surface(world, &ray, &found, &surface);
@@ -53,24 +51,20 @@ pub(super) fn trace_refraction<T: Real, W: Witness<T>>(world: &World<T>, primary
                     depth += 1;
                     throughput = weight(throughput, kr);
                     ray = reflection_ray(&surface);
-                    let own = world.skip_self.then_some(&surface.own);
-                    hit = nearest_hit(world, &ray, own, world.reflection);
-                    is_refracted = false;
+                    own = world.skip_self.then_some(surface.own);
+                    range = world.reflection;
+                    shows_background = false;
                     witness.reflected(throughput);
-                    witness.nearest(world, &ray, own, &world.reflection, hit.as_ref());
                     continue;
                 }
             }
-        } else if is_refracted {
-            // One looks through glass at the background; a reflection ray that hits nothing adds black.
+        } else if shows_background {
             color += world.background * throughput;
         }
         let Some(next) = pending.pop() else { return color };
-        (ray, throughput, depth) = (next.ray, next.throughput, next.depth);
-        hit = nearest_hit(world, &ray, Some(&next.own), world.refraction);
-        is_refracted = true;
+        (ray, own, range) = (next.ray, Some(next.own), world.refraction);
+        (throughput, depth, shows_background) = (next.throughput, next.depth, true);
         witness.resumed();
-        witness.nearest(world, &ray, Some(&next.own), &world.refraction, hit.as_ref());
     }
 }
 
