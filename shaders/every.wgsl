@@ -27,9 +27,9 @@ fn nearest_seen(ray: Ray, pixel: vec2<u32>) -> Hit {
     return nearest_hit(ray, Own(NO_SHAPE, false, vec3r()), primary_range());
 }
 
-// The nearest intersection of a reflection ray.
-fn nearest_reflected(ray: Ray, own: Own) -> Hit {
-    return nearest_hit(ray, own, reflection_range());
+// The nearest intersection of a ray that leaves a surface.
+fn nearest_secondary(ray: Ray, own: Own, range: Range) -> Hit {
+    return nearest_hit(ray, own, range);
 }
 
 // Whether any sphere stands between the ray's origin and the light with this index, at t = 1.

@@ -56,10 +56,9 @@ fn nearest_seen(ray: Ray, pixel: vec2<u32>) -> Hit {
     return nearest_in(offset, no_hit(), ray, own, range);
 }
 
-// The nearest intersection of a reflection ray: a walk through a grid (Amanatides, Woo, "A Fast Voxel Traversal Algorithm for
+// The nearest intersection of a ray that leaves a surface: a walk through a grid (Amanatides, Woo, "A Fast Voxel Traversal Algorithm for
 // Ray Tracing", 1987).
-fn nearest_reflected(ray: Ray, own: Own) -> Hit {
-    let range = reflection_range();
+fn nearest_secondary(ray: Ray, own: Own, range: Range) -> Hit {
     let cells = vec3<i32>(params.grid_cells);
     var nearest = no_hit();
     // The last list has the spheres that are too large for the cells.

@@ -108,7 +108,7 @@ pub struct Tally {
     pub primary: u64,
     /// Rays towards lights.
     pub shadow: u64,
-    /// Reflected rays.
+    /// Reflected and refracted rays.
     pub reflection: u64,
 }
 
@@ -131,6 +131,10 @@ impl<T: Real> Witness<T> for Tally {
     }
 
     fn reflected(&mut self, _throughput: T) {
+        self.reflection += 1;
+    }
+
+    fn resumed(&mut self) {
         self.reflection += 1;
     }
 }

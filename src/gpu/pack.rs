@@ -21,6 +21,8 @@ pub(super) struct Packed {
     pub(super) shapes: Vec<u8>,
     /// One per sphere.
     pub(super) materials: Vec<u8>,
+    /// One per sphere; empty where nothing refracts.
+    pub(super) glasses: Vec<u8>,
     /// One per light.
     pub(super) lights: Vec<u8>,
     /// x of each sample column on the image plane, on to the end of the last tile, then y of each sample row likewise, and
@@ -73,8 +75,8 @@ fn pack<L: Layout>(
     let camera = Camera::new(scene, settings);
     let ellipsoids = ellipsoids(scene, on(Effect::Ellipsoids));
     let indices = match settings.secondary {
-        Secondary::SkipSelf => shape_indices(&ellipsoids),
-        Secondary::Epsilon { .. } => (0..ellipsoids.len() as u32).collect(),
+        Secondary::Epsilon { .. } if !on(Effect::Refraction) => (0..ellipsoids.len() as u32).collect(),
+        _ => shape_indices(&ellipsoids),
     };
     let shapes = shape_values(&ellipsoids, indices, on(Effect::Ellipsoids));
     let columns = (0..scene.width.next_multiple_of(TILE) * settings.samples).map(|i| camera.x(i));
@@ -110,6 +112,7 @@ fn pack<L: Layout>(
         params: bytes([L::params(&params)]),
         shapes: bytes(shapes.iter().map(L::shape)),
         materials: bytes(scene.spheres.iter().zip(&ellipsoids).map(|(s, e)| L::material(s, scale(e)))),
+        glasses: bytes(scene.spheres.iter().filter(|_| on(Effect::Refraction)).map(L::glass)),
         lights: bytes(scene.lights.iter().map(L::light)),
         window: reals(&window),
         lists,
@@ -133,7 +136,9 @@ fn joined_lists(accel: &Acceleration) -> (Vec<u32>, [u32; 2]) {
         joined.extend(lists.offsets.iter().map(|offset| offset + entries_base as u32));
         entries_base += lists.entries.len();
     }
-    all.iter().for_each(|lists| joined.extend_from_slice(&lists.entries));
+    for lists in all {
+        joined.extend_from_slice(&lists.entries);
+    }
     (joined, [bases[1] as u32, bases[2] as u32])
 }
 

@@ -1,9 +1,11 @@
 //! From effects to compiled kernels: the only place that sets the constants of `shaders/effects.wgsl`.
 
+use std::num::NonZeroU32;
+
 use super::device::Gpu;
 use super::error::Error;
 use super::shader::{Kernel, Module, Storage};
-use crate::effects::{Effect, EffectSet};
+use crate::effects::{Effect, EffectSet, Effects};
 use crate::scene::Scene;
 use crate::settings::{Secondary, Settings, Specular};
 
@@ -21,7 +23,9 @@ pub struct Specialisation {
     pub kernel: Kernel,
     /// The effects that it simulates.
     pub effects: EffectSet,
-    /// Whether secondary rays skip their own sphere.
+    /// Where something refracts, how many rays wait at the most.
+    pub refraction: Option<NonZeroU32>,
+    /// Whether shadow and reflection rays skip their own sphere.
     pub skip_self: bool,
     /// Whether the specular term is (N·H)ⁿ.
     pub blinn: bool,
@@ -35,7 +39,7 @@ pub struct Specialisation {
 
 impl Specialisation {
     /// For `scene` with `effects` under `settings`.
-    pub fn new(scene: &Scene, settings: &Settings, effects: EffectSet, kernel: Kernel) -> Self {
+    pub fn new(scene: &Scene, settings: &Settings, effects: &Effects, kernel: Kernel) -> Self {
         let (spheres, lights) = (scene.spheres.len(), scene.lights.len());
         let storage = if spheres.max(lights) <= MAX_FEW {
             Storage::Few([spheres as u32, lights as u32])
@@ -46,7 +50,8 @@ impl Specialisation {
         };
         Self {
             kernel,
-            effects,
+            effects: effects.set,
+            refraction: NonZeroU32::new(effects.waiting(scene)),
             skip_self: settings.secondary == Secondary::SkipSelf,
             blinn: settings.specular == Specular::Blinn,
             storage,
@@ -66,11 +71,14 @@ impl Specialisation {
             ("REFLECTIONS", on(Effect::Reflections)),
             ("SHELLS", on(Effect::Shells)),
             ("ELLIPSOIDS", on(Effect::Ellipsoids)),
-            ("SKIP_SELF", f64::from(self.skip_self)),
+            ("SKIP_SELF", f64::from(self.skip_self || self.refraction.is_some())),
             ("BLINN", f64::from(self.blinn)),
             ("SAMPLES", f64::from(self.samples)),
             ("COUNT_RAYS", f64::from(self.count_rays)),
         ];
+        if self.refraction.is_some() {
+            constants.push(("SKIP_SELF_ALWAYS", f64::from(self.skip_self)));
+        }
         if let Storage::Few([spheres, lights]) = self.storage {
             constants.extend([("SPHERE_COUNT", f64::from(spheres)), ("LIGHT_COUNT", f64::from(lights))]);
         }
@@ -79,20 +87,23 @@ impl Specialisation {
 
     /// Whether samples go on as paths.
     pub(super) fn has_paths(&self) -> bool {
-        self.effects.has(Effect::Reflections)
+        self.refraction.is_none() && self.effects.has(Effect::Reflections)
     }
 
     /// The effects whose rays find their spheres in lists: primary rays always do.
     pub(super) fn listed_effects(&self) -> EffectSet {
         match self.storage {
-            Storage::Few(_) => self.effects.with(Effect::Shadows, false).with(Effect::Reflections, false),
+            Storage::Few(_) => {
+                let walks = [Effect::Shadows, Effect::Reflections, Effect::Refraction];
+                walks.into_iter().fold(self.effects, |effects, effect| effects.with(effect, false))
+            }
             _ => self.effects,
         }
     }
 
     /// The module that renders.
     pub fn module(&self) -> Module {
-        Module::render(self.kernel, self.storage, self.samples > 1)
+        Module::render(self.kernel, self.storage, self.samples > 1, self.refraction)
     }
 }
 
@@ -161,7 +172,9 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
         common.push((13, Read));
     }
     let primary = [(4, Read), (6, Read)];
-    let mut shading = vec![(3, lights), (11, ReadWrite)];
+    // Paths to go on with, or glass.
+    let mut shading = vec![(3, lights)];
+    shading.push(if specialisation.refraction.is_some() { (5, Read) } else { (11, ReadWrite) });
     if specialisation.kernel.carries_low() {
         shading.push((10, lights));
     }

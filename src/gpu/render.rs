@@ -124,7 +124,7 @@ impl<'a> GpuRenderer<'a> {
     ) -> Result<Self, Error> {
         let (scene, settings) = in_range(scene, settings);
         let (scene, settings) = (scene.as_ref(), &settings);
-        let specialisation = Specialisation::new(scene, settings, effects.set, kernel);
+        let specialisation = Specialisation::new(scene, settings, effects, kernel);
         let camera = Camera::new(scene, settings);
         let accel = Acceleration::new(scene, &camera, specialisation.listed_effects(), rounding);
         let packed = Packed::new(scene, settings, effects, kernel, &accel);
@@ -134,7 +134,9 @@ impl<'a> GpuRenderer<'a> {
             * (scene.spheres.len().min(64) as u64 + 1)
             * (1 + scene.lights.len() as u64 * u64::from(effects.set.has(Effect::Shadows)))
             * (1 + u64::from(effects.depth));
-        let first = FIRST_DISPATCH_TESTS / (tests_per_pixel * TILE_PIXELS as u64);
+        // A tree of rays doubles with each bounce where rays can wait.
+        let tests_per_pixel = tests_per_pixel.saturating_mul(1 << effects.waiting(scene).min(32));
+        let first = FIRST_DISPATCH_TESTS / tests_per_pixel.saturating_mul(TILE_PIXELS as u64);
         Ok(Self {
             gpu,
             accel,
@@ -364,6 +366,9 @@ impl Work {
             (13, filled(bytemuck::cast_slice(&packed.lists), storage)),
             (14, faces(&packed.faces)),
         ];
+        if specialisation.refraction.is_some() {
+            buffers.push((5, filled(&packed.glasses, storage)));
+        }
         if let Some(low) = &packed.low {
             buffers.extend([(9, shapes(&low.shapes)), (10, lights(&low.lights))]);
         }

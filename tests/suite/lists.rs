@@ -41,8 +41,7 @@ fn random_scene(seed: u64) -> Scene {
             4 if index == 5 => (center, scale) = (DVec3::ZERO, DVec3::splat(60.0)),
             // Discs and needles.
             5 => {
-                scale =
-                    DVec3::new(random.magnitude(-3.0, 0.5), random.magnitude(-3.0, 0.5), random.magnitude(-3.0, 0.5))
+                scale = DVec3::from_array([(); 3].map(|()| random.magnitude(-3.0, 0.5)));
             }
             6 => scale *= DVec3::new(random.within(0.5, 2.0), random.within(0.5, 2.0), 1.0),
             // Close to the eye: cut by the image plane, around the eye, behind it.
@@ -64,7 +63,7 @@ fn random_scene(seed: u64) -> Scene {
             ka: 0.4,
             kd: 0.6,
             ks: 0.4,
-            kr: if random.bits() % 2 == 0 { random.within(0.1, 1.0) } else { 0.0 },
+            kr: if random.bits().is_multiple_of(2) { random.within(0.1, 1.0) } else { 0.0 },
             n: 20.0,
             kt: 0.0,
             eta: 1.0,
@@ -96,7 +95,7 @@ fn random_scene(seed: u64) -> Scene {
 }
 
 fn settings_of(seed: u64) -> Settings {
-    let settings = if (seed / KINDS) % 2 == 0 { Settings::classic() } else { Settings::exact() };
+    let settings = if (seed / KINDS).is_multiple_of(2) { Settings::classic() } else { Settings::exact() };
     Settings {
         max_depth: [3, 0, 1, 8][(seed / KINDS % 4) as usize],
         samples: 1 + u32::from(seed % 23 == 22),

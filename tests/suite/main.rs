@@ -18,6 +18,7 @@ mod lists;
 mod oracle;
 mod parse;
 mod pictures;
+mod refraction;
 mod shaders;
 mod stress;
 mod study;
