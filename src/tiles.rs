@@ -30,7 +30,7 @@ pub(crate) struct Bounds {
 impl Cover {
     /// Projects the spheres of `scene`; without `true_axes` their bounding spheres.
     pub fn new(scene: &Scene, camera: &Camera, true_axes: bool) -> Self {
-        let project = |e: &Ellipsoid| Bounds::new(e, camera);
+        let project = |e: &Ellipsoid| Bounds::new(e.center, e.scale * e.radius, camera);
         Self { bounds: ellipsoids(scene, true_axes).iter().filter_map(project).collect(), camera: *camera }
     }
 
@@ -59,9 +59,8 @@ impl Cover {
 
 impl Bounds {
     /// Columns and rows that the part of the ellipsoid beyond the image plane can cover.
-    pub(crate) fn new(ellipsoid: &Ellipsoid, camera: &Camera) -> Option<Self> {
-        let semi_axes = ellipsoid.scale * ellipsoid.radius;
-        let DVec3 { x, y, z } = ellipsoid.center;
+    pub(crate) fn new(center: DVec3, semi_axes: DVec3, camera: &Camera) -> Option<Self> {
+        let DVec3 { x, y, z } = center;
         let near = camera.near();
         let across = slopes(x, z, semi_axes.x, semi_axes.z, near)?;
         let down = slopes(y, z, semi_axes.y, semi_axes.z, near)?;
@@ -69,7 +68,8 @@ impl Bounds {
         let rows = pixel_range(down.map(|slope| camera.row_of(slope * near)), camera.height())?;
         let is_large = rows[1] - rows[0] > 3 * TILE && columns[1] - columns[0] > 3 * TILE;
         let whole = z + semi_axes.z < -near;
-        let outline = (is_large && whole).then(|| Box::new(Outline::new(ellipsoid, across)));
+        let ellipsoid = || Ellipsoid::with_axes(center, semi_axes);
+        let outline = (is_large && whole).then(|| Box::new(Outline::new(&ellipsoid(), across)));
         Some(Self { columns, rows, outline })
     }
 
@@ -159,6 +159,11 @@ fn slopes(x: f64, z: f64, sx: f64, sz: f64, near: f64) -> Option<[f64; 2]> {
     // Tangents from the eye: lines x + m z = 0 at the distance of the ellipse's support.
     let a = z * z - sz * sz;
     let discriminant = x * x * sz * sz + z * z * sx * sx - sx * sx * sz * sz;
+    if z + sz < -near && a > 0.0 && discriminant >= 0.0 {
+        // Wholly beyond the image plane, and so are the points that the tangents touch.
+        let (middle, half) = (-x * z / a, discriminant.sqrt() / a);
+        return Some([middle - half, middle + half]);
+    }
     if a != 0.0 && discriminant >= 0.0 {
         for sign in [-1.0, 1.0] {
             let m = (-x * z + sign * discriminant.sqrt()) / a;

@@ -39,23 +39,18 @@ impl Acceleration {
         let enclosure = Enclosure::new(scene, effects.has(Effect::Ellipsoids), rounding);
         let lights: Vec<DVec3> = scene.lights.iter().map(|light| light.position).collect();
         let lit = effects.has(Effect::Shadows);
-        let entries = light_entries(scene.spheres.len() as u64, lights.len() as u64);
+        let spheres = scene.spheres.len() as u64;
         Self {
             screen: ScreenLists::new(&enclosure, camera),
-            lights: LightBuffer::new(&enclosure, if lit { &lights } else { &[] }, entries, rounding),
-            grid: effects.has(Effect::Reflections).then(|| Grid::new(&enclosure, rounding, grid_density())),
+            lights: LightBuffer::new(&enclosure, if lit { &lights } else { &[] }, light_entries(spheres), rounding),
+            grid: effects.has(Effect::Reflections).then(|| Grid::new(&enclosure, rounding)),
         }
     }
 }
 
-fn env(name: &str, default: f64) -> f64 {
-    std::env::var(name).ok().and_then(|x| x.parse().ok()).unwrap_or(default)
-}
-
-fn light_entries(spheres: u64, _lights: u64) -> u64 {
-    (spheres as f64 * env("LE", 12.0)) as u64 + 256
-}
-
-fn grid_density() -> f64 {
-    env("GD", 1.0)
+/// How many entries the lists of one light may have, roughly. Finer cells mean shorter lists; many spheres make the building
+/// of the lists, and the memory that they take, count for more.
+fn light_entries(spheres: u64) -> u64 {
+    let per_sphere = if spheres < 50_000 { 12 } else { 6 };
+    per_sphere * spheres + 256
 }

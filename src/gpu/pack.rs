@@ -69,7 +69,8 @@ fn pack<L: Layout>(
     with_low: bool,
     accel: &Acceleration,
 ) -> Packed {
-    let (lists, [lights_base, grid_offsets]) = joined_lists(accel);
+    let (lists, bases) = joined_lists(accel);
+    let grid_offsets = if accel.grid.is_some() { bases[bases.len() - 1] } else { 0 };
     let on = |effect| effects.set.has(effect);
     let camera = Camera::new(scene, settings);
     let ellipsoids = ellipsoids(scene, on(Effect::Ellipsoids));
@@ -112,7 +113,14 @@ fn pack<L: Layout>(
         columns: reals(&columns),
         rows: reals(&rows),
         lists,
-        faces: bytes(accel.lights.faces.iter().flatten().map(|face| L::face(face, lights_base))),
+        faces: bytes(
+            accel
+                .lights
+                .faces
+                .iter()
+                .zip(&bases[1..])
+                .flat_map(|(faces, &base)| faces.iter().map(move |f| L::face(f, base))),
+        ),
         low: with_low.then(low),
         shape_size: size_of::<L::Shape>(),
         light_size: size_of::<L::Light>(),
@@ -120,20 +128,22 @@ fn pack<L: Layout>(
     }
 }
 
-/// All lists in one buffer, tiles first, and where the offsets of lights and grid begin there.
-fn joined_lists(accel: &Acceleration) -> (Vec<u32>, [u32; 2]) {
-    let none = Lists { offsets: vec![0], entries: Vec::new() };
-    let grid = accel.grid.as_ref().map_or(&none, |grid| &grid.lists);
-    let all = [&accel.screen.lists, &accel.lights.lists, grid];
-    let bases = [0, all[0].offsets.len(), all[0].offsets.len() + all[1].offsets.len()];
-    let mut entries_base = bases[2] + all[2].offsets.len();
+/// All lists in one buffer, tiles first, and where the offsets of each light and of the grid begin there.
+fn joined_lists(accel: &Acceleration) -> (Vec<u32>, Vec<u32>) {
+    let all: Vec<&Lists> = std::iter::once(&accel.screen.lists)
+        .chain(&accel.lights.lists)
+        .chain(accel.grid.iter().map(|g| &g.lists))
+        .collect();
+    let mut entries_base = all.iter().map(|lists| lists.offsets.len()).sum::<usize>();
     let mut joined = Vec::with_capacity(entries_base + all.iter().map(|lists| lists.entries.len()).sum::<usize>());
-    for lists in all {
+    let mut bases = Vec::new();
+    for lists in &all {
+        bases.push(joined.len() as u32);
         joined.extend(lists.offsets.iter().map(|offset| offset + entries_base as u32));
         entries_base += lists.entries.len();
     }
     all.iter().for_each(|lists| joined.extend_from_slice(&lists.entries));
-    (joined, [bases[1] as u32, bases[2] as u32])
+    (joined, bases)
 }
 
 /// Where the shader finds the lists.
