@@ -118,5 +118,7 @@ fn fill<'a, I: Iterator<Item = &'a Run>>(runs: impl Fn() -> I, base: u32, ends: 
             *place += 1;
         }
     }
-    ends.iter_mut().for_each(|end| *end += base);
+    for end in ends {
+        *end += base;
+    }
 }

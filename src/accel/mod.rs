@@ -14,7 +14,7 @@ pub use bounds::Rounding;
 pub use grid::Grid;
 pub use light_buffer::{Face, LightBuffer, REACH};
 pub use lists::Lists;
-pub use screen::ScreenLists;
+pub use screen::{Cover, ScreenLists};
 
 use crate::camera::Camera;
 use crate::effects::{Effect, EffectSet};
@@ -51,6 +51,10 @@ impl Acceleration {
 /// How many entries the lists of one light may have, roughly. Finer cells mean shorter lists; many spheres make the building
 /// of the lists, and the memory that they take, count for more.
 fn light_entries(spheres: u64) -> u64 {
-    let per_sphere = if spheres < 50_000 { 12 } else { 6 };
+    let per_sphere = match spheres {
+        0..50_000 => 12,
+        50_000..500_000 => 6,
+        _ => 4,
+    };
     per_sphere * spheres + 256
 }

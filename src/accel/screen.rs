@@ -60,17 +60,39 @@ impl ScreenLists {
         (j / edge) as usize * self.across as usize + (i / edge) as usize
     }
 
-    /// Top-left pixels of the tiles of [`TILE`] pixels that any sphere may cover, in rows `first` to `first + count`, in
-    /// reading order; `first` is a multiple of [`TILE`].
-    pub fn covered(&self, first: u32, count: u32) -> Vec<[u32; 2]> {
-        let rows = (first..(first + count).min(self.height)).step_by(TILE as usize);
-        let places = rows.flat_map(|y| (0..self.width).step_by(TILE as usize).map(move |x| [x, y]));
-        places.filter(|&[x, y]| !self.at(x, y).is_empty()).collect()
+    /// Which tiles have spheres.
+    pub fn cover(&self) -> Cover {
+        let has_spheres = self.lists.offsets.windows(2).map(|ends| ends[0] < ends[1]).collect();
+        let Self { shift, across, width, height, .. } = *self;
+        Cover { has_spheres, shift, across, width, height }
     }
 
     /// The spheres that the pixel in column `i` and row `j` may see.
     pub fn at(&self, i: u32, j: u32) -> &[u32] {
         self.lists.of(self.tile(i, j))
+    }
+}
+
+/// Where the picture may have anything but background.
+#[derive(Debug, Clone)]
+pub struct Cover {
+    /// Of tiles in reading order.
+    has_spheres: Vec<bool>,
+    shift: u32,
+    across: u32,
+    width: u32,
+    height: u32,
+}
+
+impl Cover {
+    /// Top-left pixels of the tiles of [`TILE`] pixels that any sphere may cover, in rows `first` to `first + count`, in
+    /// reading order; `first` is a multiple of [`TILE`].
+    pub fn covered(&self, first: u32, count: u32) -> Vec<[u32; 2]> {
+        let edge = TILE << self.shift;
+        let tile = |x: u32, y: u32| (y / edge) as usize * self.across as usize + (x / edge) as usize;
+        let rows = (first..(first + count).min(self.height)).step_by(TILE as usize);
+        let places = rows.flat_map(|y| (0..self.width).step_by(TILE as usize).map(move |x| [x, y]));
+        places.filter(|&[x, y]| self.has_spheres[tile(x, y)]).collect()
     }
 }
 
