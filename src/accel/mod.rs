@@ -39,22 +39,21 @@ impl Acceleration {
         let enclosure = Enclosure::new(scene, effects.has(Effect::Ellipsoids), rounding);
         let lights: Vec<DVec3> = scene.lights.iter().map(|light| light.position).collect();
         let lit = effects.has(Effect::Shadows);
-        let spheres = scene.spheres.len() as u64;
+        let entries = light_entries(scene.spheres.len() as u64, lights.len() as u64);
         Self {
             screen: ScreenLists::new(&enclosure, camera),
-            lights: LightBuffer::new(&enclosure, if lit { &lights } else { &[] }, light_entries(spheres), rounding),
+            lights: LightBuffer::new(&enclosure, if lit { &lights } else { &[] }, entries, rounding),
             grid: effects.has(Effect::Reflections).then(|| Grid::new(&enclosure, rounding)),
         }
     }
 }
 
-/// How many entries the lists of one light may have, roughly. Finer cells mean shorter lists; many spheres make the building
-/// of the lists, and the memory that they take, count for more.
-fn light_entries(spheres: u64) -> u64 {
-    let per_sphere = match spheres {
-        0..50_000 => 12,
-        50_000..500_000 => 6,
-        _ => 4,
-    };
-    per_sphere * spheres + 256
+/// Entries of the lists of all lights together, roughly, unless the cells become larger than the spheres: 64 MiB.
+const MAX_LIGHT_ENTRIES: u64 = 1 << 24;
+
+/// How many entries the lists of one light may have, roughly. Finer cells mean shorter lists; with many spheres, the building
+/// of the lists and the memory that they take count for more.
+fn light_entries(spheres: u64, lights: u64) -> u64 {
+    let per_sphere = if spheres < 50_000 { 12 } else { 6 };
+    (per_sphere * spheres + 256).min(MAX_LIGHT_ENTRIES / lights.max(1))
 }

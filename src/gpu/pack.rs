@@ -16,14 +16,16 @@ use crate::scene::{Light, Scene};
 use crate::settings::{Secondary, Settings};
 use crate::tiles::TILE;
 
+/// Packs the elements of a range.
+type Write<'a> = Box<dyn Fn(Range<usize>, &mut [u8]) + Sync + 'a>;
+
 /// What a buffer holds: elements that are packed when and where they are needed.
 pub(super) struct Contents<'a> {
     /// Number of elements.
     count: usize,
     /// Bytes of an element.
     size: usize,
-    /// Packs the elements of a range.
-    write: Box<dyn Fn(Range<usize>, &mut [u8]) + Sync + 'a>,
+    write: Write<'a>,
 }
 
 impl<'a> Contents<'a> {
