@@ -1,20 +1,12 @@
-//! Which tiles of the picture any sphere can cover: the others are background and need no ray.
+//! Which tiles of the picture a sphere can cover.
 
 use glam::DVec3;
 
 use crate::camera::Camera;
-use crate::geometry::{Ellipsoid, ellipsoids};
-use crate::scene::Scene;
+use crate::geometry::Ellipsoid;
 
 /// Edge of a tile in pixels; the workgroup of the render kernel has this size in both directions.
 pub const TILE: u32 = 8;
-
-/// Conservative bounds of all spheres on the picture.
-#[derive(Debug, Clone)]
-pub struct Cover {
-    bounds: Vec<Bounds>,
-    camera: Camera,
-}
 
 /// Where one sphere can be on the picture.
 #[derive(Debug, Clone)]
@@ -27,41 +19,10 @@ pub(crate) struct Bounds {
     outline: Option<Box<Outline>>,
 }
 
-impl Cover {
-    /// Projects the spheres of `scene`; without `true_axes` their bounding spheres.
-    pub fn new(scene: &Scene, camera: &Camera, true_axes: bool) -> Self {
-        let project = |e: &Ellipsoid| Bounds::new(e, camera);
-        Self { bounds: ellipsoids(scene, true_axes).iter().filter_map(project).collect(), camera: *camera }
-    }
-
-    /// Top-left pixels of the covered tiles in rows `first` to `first + count`, in reading order; `first` is a multiple of
-    /// [`TILE`].
-    pub fn tiles(&self, first: u32, count: u32) -> Vec<[u32; 2]> {
-        let last = (first + count).min(self.camera.height()) - 1;
-        let across = self.camera.width().div_ceil(TILE);
-        let (top, down) = (first / TILE, last / TILE - first / TILE + 1);
-        let mut covered = vec![false; across as usize * down as usize];
-        for bounds in &self.bounds {
-            let [upper, lower] = bounds.rows;
-            if lower < first || upper > last {
-                continue;
-            }
-            for row in upper.max(first) / TILE..=lower.min(last) / TILE {
-                let [left, right] = bounds.columns_in([row * TILE, (row + 1) * TILE], &self.camera);
-                let start = (row - top) as usize * across as usize;
-                covered[start + (left / TILE) as usize..=start + (right / TILE) as usize].fill(true);
-            }
-        }
-        let place = |index: usize| [index as u32 % across * TILE, (top + index as u32 / across) * TILE];
-        covered.iter().enumerate().filter(|&(_, &covered)| covered).map(|(index, _)| place(index)).collect()
-    }
-}
-
 impl Bounds {
     /// Columns and rows that the part of the ellipsoid beyond the image plane can cover.
-    pub(crate) fn new(ellipsoid: &Ellipsoid, camera: &Camera) -> Option<Self> {
-        let semi_axes = ellipsoid.scale * ellipsoid.radius;
-        let DVec3 { x, y, z } = ellipsoid.center;
+    pub(crate) fn new(center: DVec3, semi_axes: DVec3, camera: &Camera) -> Option<Self> {
+        let DVec3 { x, y, z } = center;
         let near = camera.near();
         let across = slopes(x, z, semi_axes.x, semi_axes.z, near)?;
         let down = slopes(y, z, semi_axes.y, semi_axes.z, near)?;
@@ -69,7 +30,8 @@ impl Bounds {
         let rows = pixel_range(down.map(|slope| camera.row_of(slope * near)), camera.height())?;
         let is_large = rows[1] - rows[0] > 3 * TILE && columns[1] - columns[0] > 3 * TILE;
         let whole = z + semi_axes.z < -near;
-        let outline = (is_large && whole).then(|| Box::new(Outline::new(ellipsoid, across)));
+        let ellipsoid = || Ellipsoid::with_axes(center, semi_axes);
+        let outline = (is_large && whole).then(|| Box::new(Outline::new(&ellipsoid(), across)));
         Some(Self { columns, rows, outline })
     }
 
@@ -159,6 +121,11 @@ fn slopes(x: f64, z: f64, sx: f64, sz: f64, near: f64) -> Option<[f64; 2]> {
     // Tangents from the eye: lines x + m z = 0 at the distance of the ellipse's support.
     let a = z * z - sz * sz;
     let discriminant = x * x * sz * sz + z * z * sx * sx - sx * sx * sz * sz;
+    if z + sz < -near && a > 0.0 && discriminant >= 0.0 {
+        // Wholly beyond the image plane, and so are the points that the tangents touch.
+        let (middle, half) = (-x * z / a, discriminant.sqrt() / a);
+        return Some([middle - half, middle + half]);
+    }
     if a != 0.0 && discriminant >= 0.0 {
         for sign in [-1.0, 1.0] {
             let m = (-x * z + sign * discriminant.sqrt()) / a;

@@ -21,7 +21,7 @@ pub use bounds::Rounding;
 pub use grid::Grid;
 pub use light_buffer::{Face, LightBuffer, REACH};
 pub use lists::Lists;
-pub use screen::ScreenLists;
+pub use screen::{Cover, ScreenLists};
 
 /// The lists of one scene.
 #[derive(Debug, Clone, Default)]
@@ -40,20 +40,22 @@ impl Acceleration {
         let enclosure = Enclosure::new(scene, effects.has(Effect::Ellipsoids), rounding);
         let lights: Vec<DVec3> = scene.lights.iter().map(|light| light.position).collect();
         let lit = effects.has(Effect::Shadows);
-        let entries = light_entries(scene.spheres.len() as u64);
+        let entries = light_entries(scene.spheres.len() as u64, lights.len() as u64);
         Self {
             screen: ScreenLists::new(&enclosure, camera),
             lights: LightBuffer::new(&enclosure, if lit { &lights } else { &[] }, entries, rounding),
             grid: (effects.has(Effect::Reflections) || effects.has(Effect::Refraction))
-                .then(|| Grid::new(&enclosure, rounding, GRID_DENSITY)),
+                .then(|| Grid::new(&enclosure, rounding)),
         }
     }
 }
 
-/// Entries of a light's lists: some dozen cells a sphere keep the lists short, more only cost time and memory.
-fn light_entries(spheres: u64) -> u64 {
-    12 * spheres + 256
-}
+/// Entries of the lists of all lights together, roughly, unless the cells become larger than the spheres: 64 MiB.
+const MAX_LIGHT_ENTRIES: u64 = 1 << 24;
 
-/// Cells of the grid for each sphere: measured best between 1 and 4 from a thousand spheres on.
-const GRID_DENSITY: f64 = 3.0;
+/// How many entries the lists of one light may have, roughly. Finer cells mean shorter lists; with many spheres, the building
+/// of the lists and the memory that they take count for more.
+fn light_entries(spheres: u64, lights: u64) -> u64 {
+    let per_sphere = if spheres < 50_000 { 12 } else { 6 };
+    (per_sphere * spheres + 256).min(MAX_LIGHT_ENTRIES / lights.max(1))
+}

@@ -86,7 +86,7 @@ pub trait Layout {
     fn shape(values: &ShapeValues) -> Self::Shape;
     fn material(sphere: &scene::Sphere, scale: DVec3) -> Self::Material;
     fn light(light: &scene::Light) -> Self::Light;
-    /// `base` is where in the lists the offsets of the first light's cells are.
+    /// `base` is where in the lists the offsets of the light's cells begin.
     fn face(face: &accel::Face, base: u32) -> Self::Face;
     fn glass(sphere: &scene::Sphere) -> Self::Glass;
 }

@@ -13,6 +13,7 @@ mod render;
 mod selftest;
 mod shader;
 mod timestamps;
+mod upload;
 
 pub use device::{Choice, DeviceInfo, Gpu, list};
 pub use echo::echo_layout;

@@ -9,7 +9,7 @@ use wgpu::util::DeviceExt;
 use super::device::Gpu;
 use super::error::Error;
 use super::layout::{Layout, ListValues, ParamValues, ShapeValues, double, single};
-use super::pack::{bytes, low_light, low_shape, shape_values};
+use super::pack::{bytes, low_light, low_shape, shape_value};
 use super::pipeline::Specialisation;
 use super::readable::Readable;
 use super::shader::{Kernel, Module, Storage};
@@ -408,7 +408,8 @@ fn pack<L: Layout>(
     };
     let spheres: Vec<_> = surfaces.iter().map(sphere).collect();
     let ellipsoids: Vec<_> = spheres.iter().map(Ellipsoid::new).collect();
-    let shapes = shape_values(&ellipsoids, shape_indices(&ellipsoids), true);
+    let indices = shape_indices(&ellipsoids);
+    let shapes: Vec<_> = ellipsoids.iter().zip(indices).map(|(e, index)| shape_value(e, index, true)).collect();
     let numbers = |ray: &ProbeRay| {
         let (o, d) = (ray.origin, ray.direction);
         [o.x, o.y, o.z, d.x, d.y, d.z]

@@ -3,16 +3,16 @@
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
-use wgpu::util::DeviceExt;
 
 use super::device::Gpu;
 use super::error::Error;
-use super::pack::Packed;
+use super::pack::{Contents, Packed, list_contents};
 use super::pipeline::{MAX_FEW, MAX_UNIFORM_LIGHTS, Specialisation, Stage, Stages, compile};
 use super::readable::Readable;
 use super::shader::{Kernel, Storage};
 use super::timestamps::Timestamps;
-use crate::accel::{Acceleration, Rounding};
+use super::upload::upload;
+use crate::accel::{Acceleration, Cover, Rounding};
 use crate::camera::Camera;
 use crate::effects::{Effect, Effects};
 use crate::geometry::in_range;
@@ -56,7 +56,7 @@ pub struct DeviceTimes {
 #[derive(Debug)]
 pub struct GpuRenderer<'a> {
     gpu: &'a Gpu,
-    accel: Acceleration,
+    cover: Cover,
     width: u32,
     /// Samples of a pixel.
     samples: u64,
@@ -76,7 +76,8 @@ pub struct GpuRenderer<'a> {
 /// Everything that is needed to build the kernels once a tile asks for them.
 #[derive(Debug)]
 struct Inputs {
-    packed: Packed,
+    /// By binding.
+    buffers: Vec<(u32, wgpu::Buffer)>,
     specialisation: Specialisation,
 }
 
@@ -128,7 +129,14 @@ impl<'a> GpuRenderer<'a> {
         let camera = Camera::new(scene, settings);
         let accel = Acceleration::new(scene, &camera, specialisation.listed_effects(), rounding);
         let packed = Packed::new(scene, settings, effects, kernel, &accel);
-        check_fits(gpu, &packed)?;
+        let lists = list_contents(&accel);
+        check_fits(gpu, &packed, &lists)?;
+        let cover = accel.screen.cover();
+        // The lists on the host go before the spheres take memory on the device.
+        let list_buffer = upload(gpu, &lists, wgpu::BufferUsages::STORAGE, lists.len())?;
+        drop(lists);
+        drop(accel);
+        let buffers = scene_buffers(gpu, &packed, list_buffer, &specialisation)?;
         let samples = u64::from(settings.samples * settings.samples);
         let tests_per_pixel = samples
             * (scene.spheres.len().min(64) as u64 + 1)
@@ -139,14 +147,14 @@ impl<'a> GpuRenderer<'a> {
         let first = FIRST_DISPATCH_TESTS / tests_per_pixel.saturating_mul(TILE_PIXELS as u64);
         Ok(Self {
             gpu,
-            accel,
+            cover,
             width: scene.width,
             samples,
             picture_tiles: u64::from(scene.width.div_ceil(TILE)) * u64::from(scene.height.div_ceil(TILE)),
             background: settings.quantize.levels(scene.background),
             max_depth: effects.depth,
             work: None,
-            inputs: Inputs { packed, specialisation },
+            inputs: Inputs { buffers, specialisation },
             tiles_per_dispatch: first.clamp(1, u64::from(MAX_DISPATCH_TILES)) as u32,
             times: DeviceTimes::default(),
             timestamps: None,
@@ -184,7 +192,7 @@ impl<'a> GpuRenderer<'a> {
         let background = self.background;
         rgb.par_chunks_mut(row_bytes).for_each(|row| row.as_chunks_mut::<3>().0.fill(background));
 
-        let tiles = self.accel.screen.covered(first, count);
+        let tiles = self.cover.covered(first, count);
         let mut not_finite = 0;
         let mut rest = tiles.as_slice();
         while !rest.is_empty() {
@@ -207,10 +215,10 @@ impl<'a> GpuRenderer<'a> {
     fn build(&mut self) -> Result<Work, Error> {
         let start = Instant::now();
         let gpu = self.gpu;
-        let Inputs { packed, specialisation } = &self.inputs;
+        let Inputs { buffers, specialisation } = &self.inputs;
         let stages = compile(gpu, specialisation)?;
         let capacity = self.capacity();
-        let work = gpu.checked("reserving buffers", || Work::new(gpu, stages, packed, capacity, specialisation))?;
+        let work = gpu.checked("reserving buffers", || Work::new(gpu, stages, buffers, capacity, specialisation))?;
         self.submit(&work, &[[0, 0]])?;
         self.times.compile = start.elapsed();
         Ok(work)
@@ -318,37 +326,18 @@ impl<'a> GpuRenderer<'a> {
 }
 
 impl Work {
-    fn new(gpu: &Gpu, stages: Stages, packed: &Packed, capacity: u32, specialisation: &Specialisation) -> Self {
+    fn new(
+        gpu: &Gpu,
+        stages: Stages,
+        buffers: &[(u32, wgpu::Buffer)],
+        capacity: u32,
+        specialisation: &Specialisation,
+    ) -> Self {
         let device = &gpu.device;
-        let filled = |contents: &[u8], usage| {
-            // A binding of size 0 is not allowed; the kernel never reads past the counts.
-            let contents = if contents.is_empty() { &[0; 64] } else { contents };
-            device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
-        };
         let empty = |size, usage| {
             device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
         };
         let storage = wgpu::BufferUsages::STORAGE;
-        let uniform = wgpu::BufferUsages::UNIFORM;
-        // Uniform buffers have a fixed number of elements.
-        let fixed = |contents: &[u8], len: usize, element_size: usize| {
-            let mut padded = vec![0; len * element_size];
-            padded[..contents.len()].copy_from_slice(contents);
-            filled(&padded, uniform)
-        };
-        let shapes = |contents: &[u8]| match specialisation.storage {
-            Storage::Few(_) => fixed(contents, MAX_FEW, packed.shape_size),
-            _ => filled(contents, storage),
-        };
-        let lights = |contents: &[u8]| match specialisation.storage {
-            Storage::Few(_) => fixed(contents, MAX_FEW, packed.light_size),
-            Storage::Many => fixed(contents, MAX_UNIFORM_LIGHTS, packed.light_size),
-            _ => filled(contents, storage),
-        };
-        let faces = |contents: &[u8]| match specialisation.storage {
-            Storage::ManyLights => filled(contents, storage),
-            _ => fixed(contents, 6 * MAX_UNIFORM_LIGHTS, packed.face_size),
-        };
         let pixel_count = u64::from(capacity) * TILE_PIXELS as u64;
         let slots = pixel_count * u64::from(specialisation.samples * specialisation.samples);
         let pixels = Readable::new(gpu, pixel_count);
@@ -356,22 +345,7 @@ impl Work {
         let path_size = specialisation.kernel.path_size();
         let paths = if specialisation.has_paths() { 2 * slots * path_size } else { path_size };
         let color_size = if specialisation.kernel.is_double() { 32 } else { 16 };
-        let mut buffers = vec![
-            (0, filled(&packed.params, uniform)),
-            (1, shapes(&packed.shapes)),
-            (2, filled(&packed.materials, storage)),
-            (3, lights(&packed.lights)),
-            (4, filled(&packed.window, storage)),
-            (11, empty(paths, storage)),
-            (13, filled(bytemuck::cast_slice(&packed.lists), storage)),
-            (14, faces(&packed.faces)),
-        ];
-        if specialisation.refraction.is_some() {
-            buffers.push((5, filled(&packed.glasses, storage)));
-        }
-        if let Some(low) = &packed.low {
-            buffers.extend([(9, shapes(&low.shapes)), (10, lights(&low.lights))]);
-        }
+        let paths = empty(paths, storage);
         let tiles = empty(u64::from(capacity) * 8, storage | wgpu::BufferUsages::COPY_DST);
         let stage = empty(STAGE_HEAD + 8 * slots, storage | wgpu::BufferUsages::COPY_DST);
         let workgroups = empty(12, storage | wgpu::BufferUsages::INDIRECT);
@@ -379,7 +353,7 @@ impl Work {
         let results = colors.as_ref().unwrap_or(&pixels.buffer);
         let mut all: Vec<_> = buffers.iter().map(|(binding, buffer)| (*binding, buffer)).collect();
         all.extend([(6, &tiles), (7, results), (8, &ray_counts.buffer), (12, &stage), (15, &pixels.buffer)]);
-        all.push((16, &workgroups));
+        all.extend([(11, &paths), (16, &workgroups)]);
         let see_group = stages.see.bind(gpu, &all);
         let between_group = stages.begin_shading.bind(gpu, &all);
         let shade_group = stages.shade.bind(gpu, &all);
@@ -402,14 +376,57 @@ impl Work {
     }
 }
 
+/// The buffers of the scene, by binding.
+fn scene_buffers(
+    gpu: &Gpu,
+    packed: &Packed,
+    lists: wgpu::Buffer,
+    specialisation: &Specialisation,
+) -> Result<Vec<(u32, wgpu::Buffer)>, Error> {
+    let (storage, uniform) = (wgpu::BufferUsages::STORAGE, wgpu::BufferUsages::UNIFORM);
+    // A binding of size 0 is not allowed; the kernel never reads past the counts.
+    let filled = |contents: &Contents, usage| upload(gpu, contents, usage, contents.len().max(64));
+    // Uniform buffers have a fixed number of elements.
+    let fixed = |contents: &Contents, count: usize| upload(gpu, contents, uniform, count * contents.element_size());
+    let shapes = |contents: &Contents| match specialisation.storage {
+        Storage::Few(_) => fixed(contents, MAX_FEW),
+        _ => filled(contents, storage),
+    };
+    let lights = |contents: &Contents| match specialisation.storage {
+        Storage::Few(_) => fixed(contents, MAX_FEW),
+        Storage::Many => fixed(contents, MAX_UNIFORM_LIGHTS),
+        _ => filled(contents, storage),
+    };
+    let faces = |contents: &Contents| match specialisation.storage {
+        Storage::ManyLights => filled(contents, storage),
+        _ => fixed(contents, 6 * MAX_UNIFORM_LIGHTS),
+    };
+    let mut buffers = vec![
+        (0, filled(&packed.params, uniform)?),
+        (1, shapes(&packed.shapes)?),
+        (2, filled(&packed.materials, storage)?),
+        (3, lights(&packed.lights)?),
+        (4, filled(&packed.window, storage)?),
+        (13, lists),
+        (14, faces(&packed.faces)?),
+    ];
+    if specialisation.refraction.is_some() {
+        buffers.push((5, filled(&packed.glasses, storage)?));
+    }
+    if let Some([low_shapes, low_lights]) = &packed.low {
+        buffers.extend([(9, shapes(low_shapes)?), (10, lights(low_lights)?)]);
+    }
+    Ok(buffers)
+}
+
 /// Refuses a scene whose buffers are larger than the device's bindings.
-fn check_fits(gpu: &Gpu, packed: &Packed) -> Result<(), Error> {
+fn check_fits(gpu: &Gpu, packed: &Packed, lists: &Contents) -> Result<(), Error> {
     let sizes = [
         ("spheres", packed.materials.len().max(packed.shapes.len())),
         ("lights", packed.lights.len()),
         ("columns and rows", packed.window.len()),
         ("faces around the lights", packed.faces.len()),
-        ("lists", packed.lists.len() * 4),
+        ("lists", lists.len()),
     ];
     let limit = gpu.info.max_storage_binding.min(gpu.info.max_buffer);
     match sizes.iter().find(|(_, size)| *size as u64 > limit) {

@@ -256,7 +256,8 @@ fn the_device_reads_every_field_where_the_host_wrote_it() {
         expected[0].extend(grid.per_unit.to_array().map(single));
         expected[0].push(accel.screen.across);
         expected[0].extend(grid.cells.to_array());
-        let offsets = accel.screen.lists.offsets.len() + accel.lights.lists.offsets.len();
+        let offsets = accel.screen.lists.offsets.len()
+            + accel.lights.lists.iter().map(|lists| lists.offsets.len()).sum::<usize>();
         expected[0].extend([offsets as u32, 2, 1, 5, 0, 40]);
         assert_eq!(echo_layout(&gpu, &scene, &settings, &effects, kernel).unwrap(), expected.concat(), "{kernel:?}");
     }
