@@ -23,14 +23,13 @@ fn echo_bits(x: u32) {
 @compute @workgroup_size(1)
 fn echo_layout() {
     echo3(params.background);
-    echo(params.near);
-    echo3(params.ambient);
     echo(params.primary_t_min);
+    echo3(params.ambient);
     echo(params.shadow_t_min);
     echo(params.reflection_t_min);
     echo(params.quantize_bias);
-    echo(params.near_low);
     echo(params.light_slack);
+    echo_bits(params.window_rows);
     echo3(vec3r(params.grid_low));
     echo_bits(params.screen_shift);
     echo3(vec3r(params.grid_per_unit));
@@ -43,7 +42,6 @@ fn echo_layout() {
     echo_bits(params.light_count);
     echo_bits(params.max_depth);
     echo_bits(params.zero);
-    echo_bits(params.first_row);
     for (var i = 0u; i < params.sphere_count; i++) {
         echo3(shapes[i].center_radius.xyz);
         echo(shapes[i].center_radius.w);
@@ -61,6 +59,6 @@ fn echo_layout() {
         echo3(lights[i].position);
         echo3(lights[i].intensity);
     }
-    echo(window[params.sphere_count]);
-    echo(window[params.first_row + params.sphere_count]);
+    echo3(window[params.sphere_count].xyz);
+    echo3(window[params.window_rows + params.sphere_count].xyz);
 }

@@ -24,12 +24,13 @@ fn ray_from(origin: Point, direction: vec3r) -> Ray {
 }
 
 fn primary_ray(pixel: vec2<u32>) -> Ray {
-    let row = params.first_row + pixel.y;
-    let high = vec3r(window[pixel.x], window[row], -params.near);
-    let column_low = window[arrayLength(&window) / 2u + pixel.x];
-    let row_low = window[arrayLength(&window) / 2u + row];
-    let low = vec3r(column_low, row_low, -params.near_low);
-    return ray_with(Point(vec3r(), vec3r()), Pair3(high, low));
+    let column = pixel.x;
+    let row = params.window_rows + pixel.y;
+    let low = arrayLength(&window) / 2u;
+    let sum = two_sum3(window[column].xyz, window[row].xyz);
+    // Where the sum cancels, the low parts may be the greater.
+    let direction = two_sum3(sum.hi, sum.lo + (window[low + column].xyz + window[low + row].xyz));
+    return ray_with(Point(vec3r(), vec3r()), direction);
 }
 
 // From a point to a light, which lies at t = 1.

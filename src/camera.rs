@@ -1,13 +1,17 @@
-//! The eye at the origin and its window: the one place that turns a pixel into a ray, for CPU and GPU alike.
+//! The eye at the origin, its axes and its window: the one place that turns a pixel into a ray, for CPU and GPU alike.
+
+use glam::DVec3;
 
 use crate::scene::{Scene, Window};
 use crate::settings::Settings;
+use crate::view::View;
 
 /// A primary ray counts hits beyond this τ: what lies before the image plane, or just touches it, is cut away.
 pub const NEAR_T_MIN: f64 = 1.0 + 1e-6;
 
 /// Positions of all sample columns and rows on the image plane. The ray of the sample in column i and row j is
-/// τ·(`x(i)`, `y(j)`, −`near`), not normalised: τ = 1 lies on the image plane.
+/// τ·(`column(i)` + `row(j)`), not normalised: `x(i)` to the right, `y(j)` upwards and `near` along the view, so that τ = 1
+/// lies on the image plane.
 ///
 /// Each pixel is cut into k × k equal cells, k being [`Settings::samples`], and each cell has one sample where the
 /// convention places it: with centre sampling in the middle of the cell, at offsets (s + ½)/k from the pixel's left and
@@ -18,6 +22,7 @@ pub const NEAR_T_MIN: f64 = 1.0 + 1e-6;
 #[derive(Debug, Clone, Copy)]
 pub struct Camera {
     window: Window,
+    view: View,
     width: u32,
     height: u32,
     offset: (f64, f64),
@@ -25,15 +30,33 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// The camera of `scene` with its samples placed by `settings`.
+    /// The camera of `scene`, whose eye is at the origin, with its axes and samples placed by `settings`.
     pub fn new(scene: &Scene, settings: &Settings) -> Self {
         Self {
             window: scene.window,
+            view: settings.view,
             width: scene.width,
             height: scene.height,
             offset: settings.sampling.offset(),
             samples: settings.samples,
         }
+    }
+
+    /// What sample column `i` gives to the direction of its rays, in the axes of the world.
+    pub fn column(&self, i: u32) -> DVec3 {
+        let [right, _, _] = self.view.axes();
+        right * self.x(i)
+    }
+
+    /// What sample row `j` gives to the direction of its rays, in the axes of the world.
+    pub fn row(&self, j: u32) -> DVec3 {
+        let [_, up, back] = self.view.axes();
+        up * self.y(j) - back * self.near()
+    }
+
+    /// The picture's axes in the world: to the right, upwards, and against the direction of view.
+    pub fn axes(&self) -> [DVec3; 3] {
+        self.view.axes()
     }
 
     /// x on the image plane of sample column `i` (0 = left).

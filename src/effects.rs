@@ -198,7 +198,8 @@ pub struct Effects {
 impl Effects {
     /// What `scene` calls for under `settings`.
     pub fn of(scene: &Scene, settings: &Settings) -> Self {
-        let needs = Needs::new(scene, settings);
+        let scene = settings.view.relative(scene);
+        let needs = Needs::new(&scene, settings);
         let (depth, reflections) = needs.reflections();
         let refraction = needs.refraction();
         let depth = if refraction.is_ok() { settings.max_depth } else { depth };
@@ -286,7 +287,7 @@ struct Needs<'a> {
 
 impl<'a> Needs<'a> {
     fn new(scene: &'a Scene, settings: &'a Settings) -> Self {
-        let first_cut = scene.spheres.iter().position(|sphere| !beyond_image_plane(scene, sphere));
+        let first_cut = scene.spheres.iter().position(|sphere| !beyond_image_plane(scene, settings, sphere));
         let glass = scene.spheres.iter().position(|sphere| sphere.kt != 0.0).filter(|_| settings.max_depth > 0);
         Self { scene, settings, first_cut, glass }
     }
@@ -347,7 +348,7 @@ impl<'a> Needs<'a> {
             return Ok(format!("{} spheres may stand in each other's light", spheres.len()));
         }
         for (r, receiver) in spheres.iter().enumerate().filter(|(_, s)| s.kd != 0.0 || s.ks != 0.0) {
-            if !beyond_image_plane(self.scene, receiver) {
+            if !beyond_image_plane(self.scene, self.settings, receiver) {
                 return Ok(format!("{} may be seen from inside, where it shadows itself", self.name(r)));
             }
             for (l, light) in lights.iter().enumerate().filter(|(_, l)| l.intensity != DVec3::ZERO) {
@@ -393,7 +394,8 @@ impl<'a> Needs<'a> {
             // Refraction rays see mirrors from anywhere, and their inner walls.
             return (self.settings.max_depth, Ok(format!("{name} has Kr > 0")));
         }
-        let outside_only = beyond_image_plane(self.scene, &spheres[first]) && self.far_from_others(first);
+        let outside_only =
+            beyond_image_plane(self.scene, self.settings, &spheres[first]) && self.far_from_others(first);
         match (mirrors.next(), outside_only) {
             (None, true) if spheres.len() == 1 => {
                 (0, Err(format!("{name} is alone, convex and seen from outside: its reflection rays hit nothing")))
@@ -455,10 +457,15 @@ fn rounding(sphere: &Sphere) -> f64 {
 }
 
 /// Whether no primary ray can meet the sphere at or before the image plane, nor from inside.
-fn beyond_image_plane(scene: &Scene, sphere: &Sphere) -> bool {
+fn beyond_image_plane(scene: &Scene, settings: &Settings, sphere: &Sphere) -> bool {
     let near = scene.window.near;
-    let margin = 1e-4 * (near + sphere.center.z.abs());
-    sphere.center.z + sphere.scale.z.abs() < -near - margin
+    let [_, _, back] = settings.view.axes();
+    let z = back.dot(sphere.center);
+    let margin = 1e-4 * (near + z.abs());
+    // The support of the ellipsoid, scaled so that no square overflows.
+    let half_axes = back * sphere.scale;
+    let greatest = half_axes.abs().max_element();
+    z + greatest * (half_axes / greatest).length() < -near - margin
 }
 
 /// Whether `blocker` comes near the hull of the light and the receiver, both taken as bounding spheres.

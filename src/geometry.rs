@@ -78,9 +78,12 @@ pub fn range_factor(greatest: f64) -> f64 {
     if COMMON_EXTENT.contains(&greatest) { 1.0 } else { reciprocal_power_of_two(greatest) }
 }
 
-/// The scene in units in which squared lengths neither overflow nor underflow in `f32`: multiplied by a power of two, which
-/// changes no digit, no root and no pixel. Distances in the settings follow.
+/// The scene as the kernels read it: with the eye at the origin, and in units in which squared lengths neither overflow nor
+/// underflow in `f32`, which a power of two makes of them without changing a digit, a root or a pixel. Distances in the
+/// settings follow.
 pub fn in_range<'a>(scene: &'a Scene, settings: &Settings) -> (Cow<'a, Scene>, Settings) {
+    let view = settings.view;
+    let (scene, mut settings) = (view.relative(scene), Settings { view: view.at_origin(), ..*settings });
     let extent = |v: DVec3| v.abs().max_element();
     let spheres = scene.spheres.par_iter().map(|s| extent(s.center).max(extent(s.scale))).reduce(|| 0.0, f64::max);
     let lights = scene.lights.iter().map(|light| extent(light.position));
@@ -89,9 +92,9 @@ pub fn in_range<'a>(scene: &'a Scene, settings: &Settings) -> (Cow<'a, Scene>, S
     let greatest = lights.chain(window).fold(spheres, f64::max);
     let k = range_factor(greatest);
     if k == 1.0 {
-        return (Cow::Borrowed(scene), *settings);
+        return (scene, settings);
     }
-    let mut scene = scene.clone();
+    let mut scene = scene.into_owned();
     let [near, left, right, bottom, top] = [near, left, right, bottom, top].map(|x| x * k);
     scene.window = Window { near, left, right, bottom, top };
     for sphere in &mut scene.spheres {
@@ -101,7 +104,6 @@ pub fn in_range<'a>(scene: &'a Scene, settings: &Settings) -> (Cow<'a, Scene>, S
     for light in &mut scene.lights {
         light.position *= k;
     }
-    let mut settings = *settings;
     if let Secondary::Epsilon { reflection, .. } = &mut settings.secondary {
         *reflection *= k;
     }

@@ -25,3 +25,4 @@ pub mod settings;
 pub mod stress;
 pub mod study;
 pub mod tiles;
+pub mod view;

@@ -3,6 +3,8 @@
 use glam::DVec3;
 use serde::Serialize;
 
+use crate::view::View;
+
 /// Where in its pixel a sample lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -79,6 +81,8 @@ pub enum Specular {
 /// Everything besides the scene that a picture depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Settings {
+    /// Where the eye is and where it looks.
+    pub view: View,
     /// Sample position within the pixel.
     pub sampling: Sampling,
     /// Rounding of the 8-bit value.
@@ -102,6 +106,7 @@ impl Settings {
     /// The convention that the official pictures pin.
     pub fn classic() -> Self {
         Self {
+            view: View::FILE,
             sampling: Sampling::Corner,
             quantize: Quantize::Truncate,
             secondary: Secondary::Epsilon { shadow: 1e-3, reflection: 1e-3 },

@@ -1,4 +1,4 @@
-//! Which tiles of the picture a sphere can cover.
+//! Which part of the picture a sphere can cover.
 
 use glam::DVec3;
 
@@ -22,16 +22,19 @@ pub(crate) struct Bounds {
 impl Bounds {
     /// Columns and rows that the part of the ellipsoid beyond the image plane can cover.
     pub(crate) fn new(center: DVec3, semi_axes: DVec3, camera: &Camera) -> Option<Self> {
-        let DVec3 { x, y, z } = center;
+        let axes = camera.axes();
+        let [x, y, z] = axes.map(|axis| axis.dot(center));
+        let [half_x, half_y, half_z] = axes.map(|axis| axis * semi_axes);
         let near = camera.near();
-        let across = slopes(x, z, semi_axes.x, semi_axes.z, near)?;
-        let down = slopes(y, z, semi_axes.y, semi_axes.z, near)?;
+        let depth = half_z.length();
+        let across = slopes([x, z], [half_x, half_z], depth, near)?;
+        let down = slopes([y, z], [half_y, half_z], depth, near)?;
         let columns = pixel_range(across.map(|slope| camera.column_of(slope * near)), camera.width())?;
         let rows = pixel_range(down.map(|slope| camera.row_of(slope * near)), camera.height())?;
         let is_large = rows[1] - rows[0] > 3 * TILE && columns[1] - columns[0] > 3 * TILE;
-        let whole = z + semi_axes.z < -near;
+        let whole = z + depth < -near;
         let ellipsoid = || Ellipsoid::with_axes(center, semi_axes);
-        let outline = (is_large && whole).then(|| Box::new(Outline::new(&ellipsoid(), across)));
+        let outline = (is_large && whole).then(|| Box::new(Outline::new(&ellipsoid(), axes, across)));
         Some(Self { columns, rows, outline })
     }
 
@@ -55,38 +58,51 @@ impl Bounds {
     }
 }
 
-/// The ellipse that an ellipsoid wholly beyond the image plane covers, in slopes x/−z and y/−z: directions d = (x, y, −1)
-/// with (S'·d')² ≥ |d'|²(|S'|² − r²), primes in object space.
+/// The ellipse that an ellipsoid wholly beyond the image plane covers, in slopes x/−z and y/−z in the picture's axes:
+/// directions d = (x, y, −1) with (S'·d')² ≥ |d'|²(|S'|² − r²), primes in object space.
 #[derive(Debug, Clone, Copy)]
 struct Outline {
-    /// S'·d' is the scalar product of this and d.
-    projection: DVec3,
-    /// |d'|²(|S'|² − r²) is the scalar product of this and (x², y², 1).
-    tangent: DVec3,
+    /// S'.
+    center: DVec3,
+    /// d' is x times the first, y times the second, plus the third.
+    axes: [DVec3; 3],
+    /// r² and |S'|² − r².
+    radius_squared: f64,
+    rest: f64,
     /// The least and the greatest x, and the y of each.
     extremes: [[f64; 2]; 2],
 }
 
 impl Outline {
-    /// Of `ellipsoid`, whose slopes lie `within`.
-    fn new(ellipsoid: &Ellipsoid, within: [f64; 2]) -> Self {
+    /// Of `ellipsoid`, whose slopes lie `within`, in the picture's `axes`.
+    fn new(ellipsoid: &Ellipsoid, axes: [DVec3; 3], within: [f64; 2]) -> Self {
         let center = ellipsoid.center * ellipsoid.inv_scale;
-        let squared = ellipsoid.inv_scale * ellipsoid.inv_scale;
-        let projection = center * ellipsoid.inv_scale;
-        let tangent = squared * (center.length_squared() - ellipsoid.radius * ellipsoid.radius);
+        let [right, up, back] = axes.map(|axis| axis * ellipsoid.inv_scale);
+        let radius_squared = ellipsoid.radius * ellipsoid.radius;
+        let rest = center.length_squared() - radius_squared;
+        let outline = Self { center, axes: [right, up, -back], radius_squared, rest, extremes: [[0.0; 2]; 2] };
         let y_at = |x: f64| {
-            let p = projection;
-            -p.y * (p.x * x - p.z) / (p.y * p.y - tangent.y)
+            let [b, a] = outline.products(right * x - back, up);
+            -b / a
         };
-        Self { projection, tangent, extremes: within.map(|x| [x, y_at(x)]) }
+        Self { extremes: within.map(|x| [x, y_at(x)]), ..outline }
+    }
+
+    /// The bilinear form (S'·a')(S'·d') − (a'·d')(|S'|² − r²) of an axis a' with d' and with itself.
+    fn products(&self, direction: DVec3, axis: DVec3) -> [f64; 2] {
+        let along = self.center.dot(axis);
+        [direction, axis].map(|d| along * self.center.dot(d) - self.rest * axis.dot(d))
     }
 
     /// The x at which the outline has this y; none beyond it.
     fn at(&self, y: f64) -> Option<[f64; 2]> {
-        let (p, t) = (self.projection, self.tangent);
-        let rest = p.y * y - p.z;
-        let (a, b, c) = (p.x * p.x - t.x, p.x * rest, rest * rest - t.y * y * y - t.z);
-        let discriminant = b * b - a * c;
+        let [right, up, forward] = self.axes;
+        let row = up * y + forward;
+        let [b, a] = self.products(row, right);
+        // The plane of the row meets the ellipsoid where its distance from the centre is at most r.
+        let normal = right.cross(row);
+        let distance = self.center.dot(normal);
+        let discriminant = self.rest * (self.radius_squared * normal.length_squared() - distance * distance);
         (discriminant >= 0.0).then(|| [-1.0, 1.0].map(|sign| (-b + sign * discriminant.sqrt()) / a))
     }
 
@@ -110,37 +126,44 @@ fn pixel_range([a, b]: [f64; 2], size: u32) -> Option<[u32; 2]> {
     (high >= 0.0 && low < f64::from(size)).then(|| [low.max(0.0) as u32, (high as u32).min(size - 1)])
 }
 
-/// Least and greatest x/(−z) of the ellipse around (x, z) with semi-axes (sx, sz) where it lies beyond z = −near; none
-/// where it does not.
-fn slopes(x: f64, z: f64, sx: f64, sz: f64, near: f64) -> Option<[f64; 2]> {
-    if z - sz > -near {
+/// Least and greatest x/(−z) where an ellipsoid around (x, z) lies beyond z = −near; none where it does not.
+///
+/// `half_x` and `half_z` are the axes x and z times the semi-axes: their products are the entries of the matrix D for which
+/// a plane with normal n at the distance n·c of the centre is tangent where nᵀDn = (n·c)². `depth` is |`half_z`|.
+fn slopes([x, z]: [f64; 2], [half_x, half_z]: [DVec3; 2], depth: f64, near: f64) -> Option<[f64; 2]> {
+    if z - depth > -near {
         return None;
     }
     let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
     let mut include = |slope: f64| ends = [ends[0].min(slope), ends[1].max(slope)];
-    // Tangents from the eye: lines x + m z = 0 at the distance of the ellipse's support.
-    let a = z * z - sz * sz;
-    let discriminant = x * x * sz * sz + z * z * sx * sx - sx * sx * sz * sz;
-    if z + sz < -near && a > 0.0 && discriminant >= 0.0 {
+    let (mixed, deep) = (half_x.dot(half_z), half_z.length_squared());
+    let area = half_x.cross(half_z).length_squared();
+    // Tangents from the eye: lines x + m z = 0 at the distance of the ellipse's support. The discriminant is a difference of
+    // sums of squares, so that no other products cancel.
+    let a = z * z - deep;
+    let discriminant = (half_z * x - half_x * z).length_squared() - area;
+    if z + depth < -near && a > 0.0 && discriminant >= 0.0 {
         // Wholly beyond the image plane, and so are the points that the tangents touch.
-        let (middle, half) = (-x * z / a, discriminant.sqrt() / a);
+        let (middle, half) = ((mixed - x * z) / a, discriminant.sqrt() / a);
         return Some([middle - half, middle + half]);
     }
     if a != 0.0 && discriminant >= 0.0 {
         for sign in [-1.0, 1.0] {
-            let m = (-x * z + sign * discriminant.sqrt()) / a;
-            let touch = z - m * sz * sz * (x + m * z) / (sx * sx + m * m * sz * sz);
+            let m = (mixed - x * z + sign * discriminant.sqrt()) / a;
+            let support = half_x + half_z * m;
+            let touch = z - half_z.dot(support) * (x + m * z) / support.length_squared();
             if touch <= -near {
                 include(m);
             }
         }
     }
     // The cut with the image plane.
-    let height = (-near - z) / sz;
+    let height = (-near - z) / depth;
     if height.abs() <= 1.0 {
-        let half = sx * (1.0 - height * height).sqrt();
-        include((x - half) / near);
-        include((x + half) / near);
+        let middle = x + mixed / depth * height;
+        let half = area.sqrt() / depth * (1.0 - height * height).sqrt();
+        include((middle - half) / near);
+        include((middle + half) / near);
     }
     if ends[0] > ends[1] {
         // Only rounding leaves neither tangent nor cut: leave both ends open.

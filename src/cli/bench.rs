@@ -67,13 +67,13 @@ fn run_bench(args: &Args) -> Result<(), Failure> {
         check_folder(path)?;
     }
     let gpu = args.device.open()?;
-    let settings = args.picture.settings();
+    let settings = args.picture.settings()?;
     let subject = Subject {
         gpu: gpu.as_ref(),
         settings: &settings,
         resolution: args.picture.resolution(),
         effects: &|scene| args.picture.effects(scene, &settings),
-        selection: &|scene, effects| args.device.selection(gpu.as_ref(), scene, effects),
+        selection: &|scene, effects| args.device.selection(gpu.as_ref(), scene, &settings, effects),
     };
     let plan = Plan {
         families,

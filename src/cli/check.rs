@@ -13,6 +13,7 @@ use super::render::{explanation, precision_explanation};
 use crate::effects::Effects;
 use crate::precision::{self, Selection, Tier};
 use crate::scene::{Diagnostic, Scene, Severity};
+use crate::settings::Settings;
 
 /// Arguments of `trueray check`.
 #[derive(Debug, clap::Args)]
@@ -79,9 +80,8 @@ struct Contents {
 type DVec3Json = [f64; 3];
 
 impl Contents {
-    fn new(scene: &Scene, picture: &PictureOptions) -> Self {
-        let settings = picture.settings();
-        let effects = picture.effects(scene, &settings);
+    fn new(scene: &Scene, picture: &PictureOptions, settings: &Settings) -> Self {
+        let effects = picture.effects(scene, settings);
         let bounds = scene.spheres.iter().map(|s| (s.center - s.scale.abs(), s.center + s.scale.abs()));
         let extent = bounds.reduce(|(a, b), (c, d)| (a.min(c), b.max(d)));
         let axes = scene.spheres.iter().map(|s| (s.scale.abs().min_element(), s.scale.abs().max_element()));
@@ -94,7 +94,12 @@ impl Contents {
             semi_axes: axes.reduce(|(a, b), (c, d)| (a.min(c), b.max(d))).map(|(low, high)| [low, high]),
             refractive_spheres: scene.spheres.iter().filter(|sphere| sphere.kt != 0.0).count(),
             output: scene.output.clone(),
-            precision: Selection::of(scene, &effects, precision::Request::default(), &Tier::ALL),
+            precision: Selection::of(
+                &settings.view.relative(scene),
+                &effects,
+                precision::Request::default(),
+                &Tier::ALL,
+            ),
             effects,
         }
     }
@@ -124,6 +129,7 @@ pub(super) fn run(args: &Args) -> u8 {
 }
 
 fn check_all(args: &Args) -> Result<u8, Failure> {
+    let settings = args.picture.settings()?;
     let mut summaries = Vec::new();
     let mut code = OK;
     for path in &args.scenes {
@@ -137,7 +143,7 @@ fn check_all(args: &Args) -> Result<u8, Failure> {
         if let Some(scene) = &mut input.parsed.scene {
             args.picture.resize(scene);
         }
-        let contents = input.parsed.scene.as_ref().map(|scene| Contents::new(scene, &args.picture));
+        let contents = input.parsed.scene.as_ref().map(|scene| Contents::new(scene, &args.picture, &settings));
         if contents.is_none() {
             code = SCENE;
         }

@@ -173,7 +173,7 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Subje
     let mut loaded = Loaded::read(scene, false)?;
     args.picture.resize(&mut loaded.scene);
     let scene = &loaded.scene;
-    let settings = args.picture.settings();
+    let settings = args.picture.settings()?;
     let effects = args.picture.renderable_effects(scene, &settings)?;
     let (name, picture, not_finite, judge) = if let Some(path) = picture {
         // A picture of unknown origin is judged as that of the tier asked for, or else of plain f32.
@@ -186,7 +186,7 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Subje
             return Err(Failure::new(USAGE, "--device cpu would compare the reference with itself"));
         }
         let gpu = Gpu::open(choice)?;
-        let tier = args.device.selection(Some(&gpu), scene, &effects).tier;
+        let tier = args.device.selection(Some(&gpu), scene, &settings, &effects).tier;
         let backend = Backend::Device(&gpu, tier);
         let mut engine = Engine::new(backend, scene, &settings, &effects)?;
         let (rgb, not_finite) = render_picture(&mut engine, scene)?;

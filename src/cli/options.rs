@@ -3,12 +3,14 @@
 use super::failure::{Failure, USAGE};
 use super::output::errln;
 use clap::{Args, ValueEnum};
+use glam::DVec3;
 
 use crate::effects::{Effects, Request};
 use crate::gpu::{Choice, Error, Gpu};
 use crate::precision::{self, Selection, Tier};
 use crate::scene::Scene;
 use crate::settings::{Quantize, Sampling, Secondary, Settings, Specular};
+use crate::view::View;
 
 /// What decides the picture besides the scene.
 #[derive(Debug, Args)]
@@ -40,10 +42,27 @@ pub(super) struct PictureOptions {
     /// What to simulate: auto, all, none, a list such as `ambient,diffuse` (exactly those), or changes such as `-shadows,+shells`
     #[arg(long, value_name = "LIST", default_value = "auto", allow_hyphen_values = true)]
     effects: Request,
+    #[command(flatten)]
+    camera: CameraOptions,
+}
+
+/// The camera in place of the file's; the window stays the file's.
+#[derive(Debug, Args)]
+struct CameraOptions {
+    /// The eye
+    #[arg(long, value_name = "X,Y,Z", default_value = "0,0,0", allow_hyphen_values = true, value_parser = vector)]
+    eye: DVec3,
+    /// The point in the middle of the view; without it the eye looks along -Z
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = vector)]
+    look_at: Option<DVec3>,
+    /// The direction that is upwards in the picture
+    #[arg(long, value_name = "X,Y,Z", default_value = "0,1,0", allow_hyphen_values = true, value_parser = vector)]
+    up: DVec3,
 }
 
 impl PictureOptions {
-    pub(super) fn settings(&self) -> Settings {
+    /// Fails where the camera options define no view.
+    pub(super) fn settings(&self) -> Result<Settings, Failure> {
         let mut settings = match self.convention {
             Convention::Classic => Settings::classic(),
             Convention::Exact => Settings::exact(),
@@ -72,7 +91,9 @@ impl PictureOptions {
         }
         settings.max_depth = self.max_depth;
         settings.samples = self.spp;
-        settings
+        let CameraOptions { eye, look_at, up } = self.camera;
+        settings.view = View::new(eye, look_at, up).map_err(|error| Failure::new(USAGE, error.to_string()))?;
+        Ok(settings)
     }
 
     pub(super) fn effects(&self, scene: &Scene, settings: &Settings) -> Effects {
@@ -139,8 +160,15 @@ impl DeviceOptions {
 
 impl DeviceOptions {
     /// The tier that renders `scene` on `gpu`, or would on hardware where there is none.
-    pub(super) fn selection(&self, gpu: Option<&Gpu>, scene: &Scene, effects: &Effects) -> Selection {
-        Selection::of(scene, effects, self.precision, gpu.map_or(&Tier::ALL, Gpu::ladder))
+    pub(super) fn selection(
+        &self,
+        gpu: Option<&Gpu>,
+        scene: &Scene,
+        settings: &Settings,
+        effects: &Effects,
+    ) -> Selection {
+        let scene = settings.view.relative(scene);
+        Selection::of(&scene, effects, self.precision, gpu.map_or(&Tier::ALL, Gpu::ladder))
     }
 }
 
@@ -191,6 +219,15 @@ pub(super) fn samples_side(text: &str) -> Result<u32, String> {
     let count: u32 = text.parse().map_err(|_| wrong())?;
     let side = count.isqrt();
     if (1..=greatest).contains(&count) && side * side == count { Ok(side) } else { Err(wrong()) }
+}
+
+/// Three coordinates.
+fn vector(text: &str) -> Result<DVec3, String> {
+    let numbers: Option<Vec<f64>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[x, y, z]) if [x, y, z].iter().all(|number| number.is_finite()) => Ok(DVec3::new(x, y, z)),
+        _ => Err("expected three finite numbers X,Y,Z such as 0,1.5,-2".into()),
+    }
 }
 
 fn resolution(text: &str) -> Result<(u32, u32), String> {

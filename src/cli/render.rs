@@ -15,6 +15,7 @@ use crate::engine::{Backend, Engine, render_bands};
 use crate::film::{Format, PictureWriter, Target};
 use crate::gpu::Gpu;
 use crate::precision::Selection;
+use crate::settings::Settings;
 
 /// Arguments of `trueray render`.
 #[derive(Debug, clap::Args)]
@@ -67,6 +68,7 @@ fn render_all(args: &Args) -> Result<u8, Failure> {
     if args.scenes.len() > 1 && args.output.as_deref().is_some_and(|output| !output.is_dir()) {
         return Err(Failure::new(USAGE, "several scenes need a folder for -o, or none"));
     }
+    let settings = args.picture.settings()?;
     // Opening a device takes longer than reading most scenes: both at once.
     let start = Instant::now();
     let (gpu, first) = std::thread::scope(|scope| {
@@ -86,7 +88,7 @@ fn render_all(args: &Args) -> Result<u8, Failure> {
     };
     for path in &args.scenes {
         let loaded = first.take().unwrap_or_else(|| Loaded::read(path, args.quiet));
-        match loaded.and_then(|loaded| render_one(args, loaded, gpu.as_ref(), open_time)) {
+        match loaded.and_then(|loaded| render_one(args, &settings, loaded, gpu.as_ref(), open_time)) {
             Ok(stats) => all_stats.push(stats),
             Err(failure) => {
                 let failed = failure.report();
@@ -103,20 +105,25 @@ fn render_all(args: &Args) -> Result<u8, Failure> {
     Ok(code)
 }
 
-fn render_one(args: &Args, mut loaded: Loaded, gpu: Option<&Gpu>, open_time: Duration) -> Result<Stats, Failure> {
+fn render_one(
+    args: &Args,
+    settings: &Settings,
+    mut loaded: Loaded,
+    gpu: Option<&Gpu>,
+    open_time: Duration,
+) -> Result<Stats, Failure> {
     let start = Instant::now();
     args.picture.resize(&mut loaded.scene);
     let scene = &loaded.scene;
     let (target, format) = target(args, &loaded)?;
-    let settings = args.picture.settings();
-    let effects = args.picture.renderable_effects(scene, &settings)?;
-    let selection = args.device.selection(gpu, scene, &effects);
+    let effects = args.picture.renderable_effects(scene, settings)?;
+    let selection = args.device.selection(gpu, scene, settings, &effects);
     if args.explain || args.verbose {
         err!("{}{}", explanation(&loaded.name, &effects), precision_explanation(&selection));
     }
     let backend = gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, selection.tier));
 
-    let mut engine = Engine::new(backend, scene, &settings, &effects)?;
+    let mut engine = Engine::new(backend, scene, settings, &effects)?;
     let wants_stats = args.stats || args.stats_json.is_some();
     if wants_stats && !args.no_ray_counts {
         engine.count_rays();
@@ -147,7 +154,7 @@ fn render_one(args: &Args, mut loaded: Loaded, gpu: Option<&Gpu>, open_time: Dur
         spheres: scene.spheres.len(),
         lights: scene.lights.len(),
         device: device_name(gpu),
-        settings,
+        settings: *settings,
         effects,
         precision: gpu.map(|_| selection),
         rays: engine.rays().filter(|_| !args.no_ray_counts),

@@ -61,6 +61,7 @@ fn study(args: &Args) -> Result<(), Failure> {
     for path in [&args.report, &args.csv, &args.json].into_iter().flatten() {
         check_folder(path)?;
     }
+    let settings = args.picture.settings()?;
     let gpu = args.device.open()?;
     let distinct = |list: &[u32]| {
         let mut list = list.to_vec();
@@ -80,11 +81,10 @@ fn study(args: &Args) -> Result<(), Failure> {
         let mut loaded = Loaded::read(path, false)?;
         args.picture.resize(&mut loaded.scene);
         let scene = &loaded.scene;
-        let settings = args.picture.settings();
         let deepest = plan.depths.iter().copied().fold(settings.max_depth, u32::max);
         args.picture.renderable_effects(scene, &Settings { max_depth: deepest, ..settings })?;
         let effects = |settings: &Settings| args.picture.effects(scene, settings);
-        let selection = args.device.selection(gpu.as_ref(), scene, &effects(&settings));
+        let selection = args.device.selection(gpu.as_ref(), scene, &settings, &effects(&settings));
         let subject = Subject {
             name: &loaded.name,
             scene,

@@ -39,8 +39,8 @@ impl<T: Real> Reference<T> {
 
     /// The ray of the sample in sample column `i` and sample row `j`.
     pub(super) fn primary_ray(&self, i: u32, j: u32) -> Ray<T> {
-        let direction = DVec3::new(self.camera.x(i), self.camera.y(j), -self.camera.near());
-        Ray { origin: Vec3::ZERO, direction: Vec3::from_f64(direction) }
+        let direction = Vec3::from_f64(self.camera.column(i)) + Vec3::from_f64(self.camera.row(j));
+        Ray { origin: Vec3::ZERO, direction }
     }
 
     /// The unclamped colour of pixel (column `i`, row `j`).

@@ -107,6 +107,10 @@ impl Found<'_> {
     }
 
     fn settings(&mut self, settings: &Settings) {
+        if settings.view != crate::view::View::FILE {
+            let what = "a scene is exported with the camera of its file: leave --eye, --look-at and --up out";
+            self.obstacles.push(Obstacle::Settings(what.into()));
+        }
         if settings.samples > 1 {
             let what = format!("{} has no regular grid of samples: export one sample a pixel", self.peer);
             self.obstacles.push(Obstacle::Settings(what));

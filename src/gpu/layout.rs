@@ -31,17 +31,16 @@ macro_rules! shader_struct {
 #[allow(missing_docs, reason = "the fields are those of Params")]
 pub struct ParamValues {
     pub background: DVec3,
-    pub near: f64,
     pub ambient: DVec3,
     pub primary_t_min: f64,
     pub shadow_t_min: f64,
     pub reflection_t_min: f64,
     pub quantize_bias: f64,
+    pub window_rows: u32,
     pub lists: ListValues,
     pub sphere_count: u32,
     pub light_count: u32,
     pub max_depth: u32,
-    pub first_row: u32,
 }
 
 /// Where the lists of spheres are.
@@ -93,7 +92,7 @@ pub trait Layout {
 
 /// Declares the structs for one scalar, with the numbers of `u32` that pad each.
 macro_rules! layout {
-    ($(#[$doc:meta])* $module:ident, $real:ty, params $params:literal, shape $shape:literal, material $material:literal, light $light:literal, face $face0:literal $face1:literal) => {
+    ($(#[$doc:meta])* $module:ident, $real:ty, params $params0:literal $params1:literal, shape $shape:literal, material $material:literal, light $light:literal, face $face0:literal $face1:literal) => {
         $(#[$doc])*
         pub mod $module {
             use bytemuck::{Pod, Zeroable};
@@ -107,20 +106,22 @@ macro_rules! layout {
                 Params {
                     /// Colour of a primary ray that hits nothing.
                     background: [$real; 3],
-                    /// Distance of the image plane.
-                    near: $real,
-                    /// Ambient intensity.
-                    ambient: [$real; 3],
                     /// A primary ray's hit counts beyond this.
                     primary_t_min: $real,
+                    /// Ambient intensity.
+                    ambient: [$real; 3],
                     /// A blocker counts beyond this part of the way to the light.
                     shadow_t_min: $real,
                     /// A reflection ray's hit counts beyond this.
                     reflection_t_min: $real,
                     /// Added to 255·c before the fraction is cut off.
                     quantize_bias: $real,
-                    /// What rounding took from `near`.
-                    near_low: $real,
+                    /// What a blocker must be farther from the light than a point to end a light's list.
+                    light_slack: $real,
+                    /// Where in the window the rows begin.
+                    window_rows: u32,
+                    /// To the alignment that WGSL gives the next vector.
+                    padding0: [u32; $params0],
                     /// The corner of the grid with the least coordinates.
                     grid_low: [f32; 3],
                     /// Shift from pixels to the tiles that have lists.
@@ -133,8 +134,6 @@ macro_rules! layout {
                     grid_cells: [u32; 3],
                     /// Where in the lists the offsets of the grid's cells begin.
                     grid_offsets: u32,
-                    /// What a blocker must be farther from the light than a point to end a light's list.
-                    light_slack: $real,
                     /// Number of spheres.
                     sphere_count: u32,
                     /// Number of lights.
@@ -143,10 +142,8 @@ macro_rules! layout {
                     max_depth: u32,
                     /// 0, which no compiler knows.
                     zero: u32,
-                    /// Where in the window the rows begin.
-                    first_row: u32,
                     /// To the size that WGSL gives the struct.
-                    padding: [u32; $params],
+                    padding1: [u32; $params1],
                 }
             }
 
@@ -254,24 +251,22 @@ macro_rules! layout {
                 fn params(values: &ParamValues) -> Params {
                     Params {
                         background: vector(values.background),
-                        near: Self::real(values.near),
                         ambient: vector(values.ambient),
                         primary_t_min: Self::real(values.primary_t_min),
                         shadow_t_min: Self::real(values.shadow_t_min),
                         reflection_t_min: Self::real(values.reflection_t_min),
                         quantize_bias: Self::real(values.quantize_bias),
-                        near_low: Self::real(Self::residual(values.near)),
+                        light_slack: Self::real(values.lists.light_slack),
+                        window_rows: values.window_rows,
                         grid_low: values.lists.grid_low.as_vec3().to_array(),
                         screen_shift: values.lists.screen_shift,
                         grid_per_unit: values.lists.grid_per_unit.as_vec3().to_array(),
                         screen_across: values.lists.screen_across,
                         grid_cells: values.lists.grid_cells.to_array(),
                         grid_offsets: values.lists.grid_offsets,
-                        light_slack: Self::real(values.lists.light_slack),
                         sphere_count: values.sphere_count,
                         light_count: values.light_count,
                         max_depth: values.max_depth,
-                        first_row: values.first_row,
                         ..Params::zeroed()
                     }
                 }
@@ -334,21 +329,21 @@ macro_rules! layout {
 
 layout!(
     /// The structs of the `f32` kernels.
-    single, f32, params 2, shape 0, material 1, light 1, face 0 2
+    single, f32, params 0 0, shape 0, material 1, light 1, face 0 2
 );
 layout!(
     /// The structs of the `f64` kernels.
-    double, f64, params 5, shape 1, material 2, light 2, face 1 2
+    double, f64, params 1 0, shape 1, material 2, light 2, face 1 2
 );
 
 const _: () = {
-    assert!(size_of::<single::Params>() == 128 && std::mem::offset_of!(single::Params, sphere_count) == 100);
+    assert!(size_of::<single::Params>() == 112 && std::mem::offset_of!(single::Params, sphere_count) == 96);
     assert!(size_of::<single::Shape>() == 32 && std::mem::offset_of!(single::Shape, inv_scale) == 16);
     assert!(size_of::<single::Material>() == 48 && std::mem::offset_of!(single::Material, ks) == 32);
     assert!(size_of::<single::Light>() == 32 && std::mem::offset_of!(single::Light, intensity) == 16);
     assert!(size_of::<single::Face>() == 32 && size_of::<double::Face>() == 48);
     assert!(size_of::<single::Glass>() == 12 && size_of::<double::Glass>() == 24);
-    assert!(size_of::<double::Params>() == 192 && std::mem::offset_of!(double::Params, sphere_count) == 152);
+    assert!(size_of::<double::Params>() == 160 && std::mem::offset_of!(double::Params, sphere_count) == 144);
     assert!(size_of::<double::Shape>() == 64 && std::mem::offset_of!(double::Shape, inv_scale) == 32);
     assert!(size_of::<double::Material>() == 96 && std::mem::offset_of!(double::Material, ks) == 64);
     assert!(size_of::<double::Light>() == 64 && std::mem::offset_of!(double::Light, intensity) == 32);

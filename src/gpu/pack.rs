@@ -74,8 +74,8 @@ pub(super) struct Packed<'a> {
     pub(super) glasses: Contents<'a>,
     /// One per light.
     pub(super) lights: Contents<'a>,
-    /// x of each sample column on the image plane, on to the end of the last tile, then y of each sample row likewise, and
-    /// then what rounding took from each.
+    /// What each sample column and then each sample row gives to its rays, on to the end of the last tile, and then what
+    /// rounding took from each.
     pub(super) window: Contents<'a>,
     /// Six faces a light with lists.
     pub(super) faces: Contents<'a>,
@@ -119,29 +119,23 @@ fn pack<'a, L: Layout + 'a>(
         let index = indices.get(i).copied().unwrap_or(i as u32);
         shape_value(&ellipsoid(&scene.spheres[i], true_axes), index, true_axes)
     };
-    let columns = (0..scene.width.next_multiple_of(TILE) * settings.samples).map(|i| camera.x(i));
-    let first_row = columns.len() as u32;
-    let rows = (0..scene.height.next_multiple_of(TILE) * settings.samples).map(|j| camera.y(j));
-    let mut window: Vec<f64> = columns.chain(rows).collect();
-    if with_low {
-        window.extend_from_within(..);
-        let low = window.len() / 2;
-        window[low..].iter_mut().for_each(|x| *x = L::residual(*x));
-    }
+    let [columns, rows] = [scene.width, scene.height].map(|size| size.next_multiple_of(TILE) * settings.samples);
+    let window = || (0..columns).map(|i| camera.column(i)).chain((0..rows).map(|j| camera.row(j)));
+    let window_low = with_low.then(|| window().map(residual::<L>)).into_iter().flatten();
+    let window: Vec<DVec3> = window().chain(window_low).collect();
     let bases = list_bases(accel);
     let params = ParamValues {
         background: scene.background,
-        near: camera.near(),
         ambient: scene.ambient,
         primary_t_min: if on(Effect::Shells) { NEAR_T_MIN } else { 0.0 },
         shadow_t_min: settings.secondary.shadow_t_min(),
         reflection_t_min: settings.secondary.reflection_t_min(),
         quantize_bias: settings.quantize.bias(),
+        window_rows: columns,
         lists: list_values(accel, accel.grid.as_ref().map_or(0, |_| bases[bases.len() - 1])),
         sphere_count: scene.spheres.len() as u32,
         light_count: scene.lights.len() as u32,
         max_depth: effects.depth,
-        first_row,
     };
     let material = move |i: usize| {
         let sphere = &scene.spheres[i];
@@ -165,7 +159,7 @@ fn pack<'a, L: Layout + 'a>(
         materials: Contents::new(spheres, material),
         glasses: Contents::new(if on(Effect::Refraction) { spheres } else { 0 }, |i| L::glass(&scene.spheres[i])),
         lights: Contents::new(lights.len(), |i| L::light(&lights[i])),
-        window: Contents::new(window.len(), move |i| L::real(window[i])),
+        window: Contents::new(window.len(), move |i| window[i].extend(0.0).to_array().map(L::real)),
         faces: Contents::new(faces.len(), move |i| L::face(&faces[i].0, faces[i].1)),
         low: with_low.then(low),
     }

@@ -367,17 +367,16 @@ impl<'a> Prober<'a> {
 fn params<L: Layout>() -> Vec<u8> {
     bytes([L::params(&ParamValues {
         background: DVec3::ZERO,
-        near: 1.0,
         ambient: DVec3::ZERO,
         primary_t_min: NEAR_T_MIN,
         shadow_t_min: 0.0,
         reflection_t_min: 0.0,
         quantize_bias: 0.0,
+        window_rows: 0,
         lists: ListValues::default(),
         sphere_count: 0,
         light_count: 0,
         max_depth: 0,
-        first_row: 0,
     })])
 }
 

@@ -1,5 +1,6 @@
 //! The report: one HTML file that needs nothing else.
 
+use glam::DVec3;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::contestant::Contestant;
@@ -8,6 +9,7 @@ use super::measure::{Point, Series, Study};
 use super::plots;
 use crate::report::number::{ppm, short, time};
 use crate::settings::{Sampling, Settings};
+use crate::view::View;
 
 /// The page with all `studies` and the hard cases, where they were measured; `command` is what made them.
 pub fn html(studies: &[Study], hard_cases: Option<&HardCases>, command: &str) -> String {
@@ -99,13 +101,23 @@ fn section(study: &Study) -> Markup {
     }
 }
 
+/// A vector as the command line has it.
+fn coordinates(v: DVec3) -> String {
+    let DVec3 { x, y, z } = v;
+    format!("{x},{y},{z}")
+}
+
 fn facts(study: &Study) -> Markup {
-    let Settings { sampling, quantize, secondary, specular, max_depth, samples } = study.settings;
+    let Settings { view, sampling, quantize, secondary, specular, max_depth, samples } = study.settings;
     html! {
         dl {
             dt { "Picture" }
             dd { (study.width) " × " (study.height) ", " (study.spheres) " spheres, " (study.lights) " lights" }
             dt { "Device" }
+            @if view != View::FILE {
+                dt { "Camera" }
+                dd { "eye at " (coordinates(view.eye)) ", looking along " (coordinates(-view.axes()[2])) }
+            }
             @match &study.device {
                 Some(info) => dd { (info.name) " (" (info.kind) "), driver " (info.driver) },
                 None => dd { "none, CPU alone" },

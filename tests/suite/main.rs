@@ -8,6 +8,7 @@
 #![allow(missing_docs, reason = "test names say what they test")]
 
 mod bench;
+mod camera;
 mod cli;
 mod compare;
 mod effects;
@@ -23,4 +24,3 @@ mod shaders;
 mod stress;
 mod study;
 mod support;
-mod tiles;
