@@ -43,6 +43,7 @@ fn echo_layout() {
     echo_bits(params.light_count);
     echo_bits(params.max_depth);
     echo_bits(params.zero);
+    echo_bits(params.first_row);
     for (var i = 0u; i < params.sphere_count; i++) {
         echo3(shapes[i].center_radius.xyz);
         echo(shapes[i].center_radius.w);
@@ -60,6 +61,6 @@ fn echo_layout() {
         echo3(lights[i].position);
         echo3(lights[i].intensity);
     }
-    echo(columns[params.sphere_count]);
-    echo(rows[params.sphere_count]);
+    echo(window[params.sphere_count]);
+    echo(window[params.first_row + params.sphere_count]);
 }

@@ -24,9 +24,10 @@ fn ray_from(origin: Point, direction: vec3r) -> Ray {
 }
 
 fn primary_ray(pixel: vec2<u32>) -> Ray {
-    let high = vec3r(columns[pixel.x], rows[pixel.y], -params.near);
-    let column_low = columns[arrayLength(&columns) / 2u + pixel.x];
-    let row_low = rows[arrayLength(&rows) / 2u + pixel.y];
+    let row = params.first_row + pixel.y;
+    let high = vec3r(window[pixel.x], window[row], -params.near);
+    let column_low = window[arrayLength(&window) / 2u + pixel.x];
+    let row_low = window[arrayLength(&window) / 2u + row];
     let low = vec3r(column_low, row_low, -params.near_low);
     return ray_with(Point(vec3r(), vec3r()), Pair3(high, low));
 }

@@ -18,7 +18,7 @@ fn ray_from(origin: Point, direction: vec3r) -> Ray {
 }
 
 fn primary_ray(pixel: vec2<u32>) -> Ray {
-    return ray_from(vec3r(), vec3r(columns[pixel.x], rows[pixel.y], -params.near));
+    return ray_from(vec3r(), vec3r(window[pixel.x], window[params.first_row + pixel.y], -params.near));
 }
 
 // From a point to a light, which lies at t = 1.

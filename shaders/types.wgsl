@@ -33,6 +33,8 @@ struct Params {
     max_depth: u32,
     // 0, which no compiler knows: see barrier() in eft.wgsl.
     zero: u32,
+    // Where in `window` the rows begin.
+    first_row: u32,
 }
 
 // What the intersection reads of a sphere.
@@ -65,9 +67,8 @@ struct Light {
 // Bindings 1 and 3, and their low parts 9 and 10, shapes and lights, are in few.wgsl or in many.wgsl and lights_*.wgsl.
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(2) var<storage, read> materials: array<Material>;
-// x of each column and y of each row of samples on the image plane; for the tiers that carry it, what rounding took from each follows in
-// the second half.
-@group(0) @binding(4) var<storage, read> columns: array<real>;
-@group(0) @binding(5) var<storage, read> rows: array<real>;
+// x of each column and then y of each row of samples on the image plane; for the tiers that carry it, what rounding took from
+// each follows in the second half.
+@group(0) @binding(4) var<storage, read> window: array<real>;
 // Top-left pixel of each tile that a sphere may cover.
 @group(0) @binding(6) var<storage, read> tiles: array<vec2<u32>>;

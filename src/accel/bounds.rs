@@ -19,6 +19,8 @@ impl Rounding {
     pub const SINGLE: Self = Self { tests: 6e-8, lookups: 6e-8 };
     /// Error-free transforms of `f32` in the tests.
     pub const COMPENSATED: Self = Self { tests: 1e-12, lookups: 6e-8 };
+    /// Nothing is known: every list has every sphere.
+    pub const UNKNOWN: Self = Self { tests: 1e9, lookups: 6e-8 };
     /// `f64` throughout.
     pub const DOUBLE: Self = Self { tests: 1.2e-16, lookups: 1.2e-16 };
 }
@@ -60,7 +62,12 @@ impl<'a> Enclosure<'a> {
     pub(super) fn slack(&self) -> f64 {
         let ratio = |s: &Sphere| s.scale.abs().max_element() / s.scale.abs().min_element();
         let ratio = if self.true_axes { self.spheres.par_iter().map(ratio).reduce(|| 1.0, f64::max) } else { 1.0 };
-        ERROR_STEPS * Rounding::SINGLE.tests * self.magnitude * ratio
+        self.error.max(ERROR_STEPS * Rounding::SINGLE.tests * self.magnitude) * ratio
+    }
+
+    /// The greatest semi-axis as it is.
+    pub(super) fn radius(&self, sphere: usize) -> f64 {
+        self.spheres[sphere].scale.abs().max_element()
     }
 
     /// Centre and enlarged semi-axes.

@@ -204,7 +204,8 @@ fn find(enclosure: &Enclosure, light: DVec3, error: f64, spheres: std::ops::Rang
     for sphere in spheres {
         let Solid { center, semi_axes } = enclosure.solid(sphere);
         let from_light = center - light;
-        let key = key((from_light.length() - semi_axes.max_element() * REACH) as f32, sphere);
+        // As the kernels calculate it: what they leave out must follow in the list.
+        let key = key((from_light.length() - enclosure.radius(sphere) * REACH) as f32, sphere);
         for_each_face(from_light, semi_axes, |face, ranges| {
             let ranges = ranges.map(|[low, high]| [low - error, high + error]);
             extents[face] = extents[face].with(ranges);

@@ -10,20 +10,21 @@ mod light_buffer;
 mod lists;
 mod screen;
 
+use glam::DVec3;
+
+use crate::camera::Camera;
+use crate::effects::{Effect, EffectSet};
+use crate::scene::Scene;
+use bounds::Enclosure;
+
 pub use bounds::Rounding;
 pub use grid::Grid;
 pub use light_buffer::{Face, LightBuffer, REACH};
 pub use lists::Lists;
 pub use screen::{Cover, ScreenLists};
 
-use crate::camera::Camera;
-use crate::effects::{Effect, EffectSet};
-use crate::scene::Scene;
-use bounds::Enclosure;
-use glam::DVec3;
-
 /// The lists of one scene.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Acceleration {
     /// For rays from the eye.
     pub screen: ScreenLists,
@@ -43,7 +44,8 @@ impl Acceleration {
         Self {
             screen: ScreenLists::new(&enclosure, camera),
             lights: LightBuffer::new(&enclosure, if lit { &lights } else { &[] }, entries, rounding),
-            grid: effects.has(Effect::Reflections).then(|| Grid::new(&enclosure, rounding)),
+            grid: (effects.has(Effect::Reflections) || effects.has(Effect::Refraction))
+                .then(|| Grid::new(&enclosure, rounding)),
         }
     }
 }

@@ -11,7 +11,7 @@ use crate::tiles::{Bounds, TILE};
 const MAX_ENTRIES: u64 = 1 << 22;
 
 /// Lists of spheres in ascending order of index, one for each tile of pixels.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct ScreenLists {
     /// Tiles in reading order.
     pub lists: Lists,

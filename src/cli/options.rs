@@ -1,5 +1,6 @@
 //! Options that several subcommands share.
 
+use super::failure::{Failure, USAGE};
 use super::output::errln;
 use clap::{Args, ValueEnum};
 
@@ -27,7 +28,7 @@ pub(super) struct PictureOptions {
     /// Specular term
     #[arg(long, value_enum)]
     specular: Option<SpecularArg>,
-    /// Greatest number of reflection bounces
+    /// Greatest number of bounces, reflected or refracted
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(0..=i64::from(Settings::MAX_DEPTH)))]
     max_depth: u32,
     /// Samples of each pixel, on a regular grid: a square number up to 256
@@ -81,6 +82,21 @@ impl PictureOptions {
     /// The size that `--res` asks for.
     pub(super) fn resolution(&self) -> Option<(u32, u32)> {
         self.res
+    }
+
+    /// The same, or a refusal where so deep a tree of rays would never end.
+    pub(super) fn renderable_effects(&self, scene: &Scene, settings: &Settings) -> Result<Effects, Failure> {
+        let effects = self.effects(scene, settings);
+        let waiting = effects.waiting(scene);
+        if waiting > Effects::MAX_WAITING {
+            let message = format!(
+                "a depth of {waiting} is too much where a sphere has both Kr and Kt: every bounce doubles the rays\n  \
+                 help: --max-depth {} is the most for this scene",
+                Effects::MAX_WAITING
+            );
+            return Err(Failure::new(USAGE, message));
+        }
+        Ok(effects)
     }
 
     /// Applies `--res`.

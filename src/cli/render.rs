@@ -109,7 +109,7 @@ fn render_one(args: &Args, mut loaded: Loaded, gpu: Option<&Gpu>, open_time: Dur
     let scene = &loaded.scene;
     let (target, format) = target(args, &loaded)?;
     let settings = args.picture.settings();
-    let effects = args.picture.effects(scene, &settings);
+    let effects = args.picture.renderable_effects(scene, &settings)?;
     let selection = args.device.selection(gpu, scene, &effects);
     if args.explain || args.verbose {
         err!("{}{}", explanation(&loaded.name, &effects), precision_explanation(&selection));
@@ -195,7 +195,7 @@ pub(super) fn explanation(name: &str, effects: &Effects) -> String {
         format!("  {:<12} {:<4} {}\n", row.effect, if row.on { "on" } else { "off" }, row.reason)
     };
     let rows: String = effects.rows.iter().map(row).collect();
-    format!("{name}: effects (reflection depth {})\n{rows}", effects.depth)
+    format!("{name}: effects (depth {})\n{rows}", effects.depth)
 }
 
 /// What the scene demands and which tier that takes.

@@ -5,10 +5,12 @@ mod intersect;
 mod margin;
 pub mod oracle;
 mod real;
+mod refract;
 mod render;
 mod scene;
 mod shade;
 mod trace;
+mod trace_refraction;
 mod vec3;
 mod witness;
 

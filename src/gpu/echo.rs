@@ -12,7 +12,7 @@ use crate::scene::Scene;
 use crate::settings::Settings;
 
 /// Values before the spheres, of each sphere, of each light, and after the lights.
-const COUNTS: [usize; 4] = [29, 19, 6, 2];
+const COUNTS: [usize; 4] = [30, 19, 6, 2];
 
 /// Packs `scene` and lets the device write back every field in the order of `shaders/echo.wgsl`: numbers as the bits of
 /// their nearest `f32`.
@@ -34,8 +34,7 @@ pub fn echo_layout(
             (1, Space::Storage, &packed.shapes.bytes()),
             (2, Space::Storage, &packed.materials.bytes()),
             (3, Space::Storage, &packed.lights.bytes()),
-            (4, Space::Storage, &packed.columns.bytes()),
-            (5, Space::Storage, &packed.rows.bytes()),
+            (4, Space::Storage, &packed.window.bytes()),
         ],
         output: 21,
         output_len: head + sphere * scene.spheres.len() + light * scene.lights.len() + tail,

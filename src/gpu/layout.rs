@@ -41,6 +41,7 @@ pub struct ParamValues {
     pub sphere_count: u32,
     pub light_count: u32,
     pub max_depth: u32,
+    pub first_row: u32,
 }
 
 /// Where the lists of spheres are.
@@ -74,6 +75,7 @@ pub trait Layout {
     type Material: Pod;
     type Light: Pod;
     type Face: Pod;
+    type Glass: Pod;
     /// The scalar.
     type Real: Pod;
     /// The nearest scalar.
@@ -84,8 +86,9 @@ pub trait Layout {
     fn shape(values: &ShapeValues) -> Self::Shape;
     fn material(sphere: &scene::Sphere, scale: DVec3) -> Self::Material;
     fn light(light: &scene::Light) -> Self::Light;
-    /// `base` is where in the lists the offsets of the first light's cells are.
+    /// `base` is where in the lists the offsets of the light's cells begin.
     fn face(face: &accel::Face, base: u32) -> Self::Face;
+    fn glass(sphere: &scene::Sphere) -> Self::Glass;
 }
 
 /// Declares the structs for one scalar, with the numbers of `u32` that pad each.
@@ -140,6 +143,8 @@ macro_rules! layout {
                     max_depth: u32,
                     /// 0, which no compiler knows.
                     zero: u32,
+                    /// Where in the window the rows begin.
+                    first_row: u32,
                     /// To the size that WGSL gives the struct.
                     padding: [u32; $params],
                 }
@@ -213,6 +218,18 @@ macro_rules! layout {
                 }
             }
 
+            shader_struct! {
+                /// What only refraction reads of a sphere.
+                Glass {
+                    /// Transmission coefficient.
+                    kt: $real,
+                    /// Index of refraction of the inside relative to the outside.
+                    eta: $real,
+                    /// 1/`eta`.
+                    inv_eta: $real,
+                }
+            }
+
             /// Packs into these structs; every number is rounded once, to the nearest.
             #[derive(Debug, Clone, Copy)]
             pub struct Layout;
@@ -223,6 +240,7 @@ macro_rules! layout {
                 type Material = Material;
                 type Light = Light;
                 type Face = Face;
+                type Glass = Glass;
                 type Real = $real;
 
                 fn real(x: f64) -> $real {
@@ -253,6 +271,7 @@ macro_rules! layout {
                         sphere_count: values.sphere_count,
                         light_count: values.light_count,
                         max_depth: values.max_depth,
+                        first_row: values.first_row,
                         ..Params::zeroed()
                     }
                 }
@@ -296,6 +315,14 @@ macro_rules! layout {
                         ..Face::zeroed()
                     }
                 }
+
+                fn glass(sphere: &scene::Sphere) -> Glass {
+                    Glass {
+                        kt: Self::real(sphere.kt),
+                        eta: Self::real(sphere.eta),
+                        inv_eta: Self::real(1.0 / sphere.eta),
+                    }
+                }
             }
 
             fn vector(v: DVec3) -> [$real; 3] {
@@ -307,11 +334,11 @@ macro_rules! layout {
 
 layout!(
     /// The structs of the `f32` kernels.
-    single, f32, params 3, shape 0, material 1, light 1, face 0 2
+    single, f32, params 2, shape 0, material 1, light 1, face 0 2
 );
 layout!(
     /// The structs of the `f64` kernels.
-    double, f64, params 6, shape 1, material 2, light 2, face 1 2
+    double, f64, params 5, shape 1, material 2, light 2, face 1 2
 );
 
 const _: () = {
@@ -320,6 +347,7 @@ const _: () = {
     assert!(size_of::<single::Material>() == 48 && std::mem::offset_of!(single::Material, ks) == 32);
     assert!(size_of::<single::Light>() == 32 && std::mem::offset_of!(single::Light, intensity) == 16);
     assert!(size_of::<single::Face>() == 32 && size_of::<double::Face>() == 48);
+    assert!(size_of::<single::Glass>() == 12 && size_of::<double::Glass>() == 24);
     assert!(size_of::<double::Params>() == 192 && std::mem::offset_of!(double::Params, sphere_count) == 152);
     assert!(size_of::<double::Shape>() == 64 && std::mem::offset_of!(double::Shape, inv_scale) == 32);
     assert!(size_of::<double::Material>() == 96 && std::mem::offset_of!(double::Material, ks) == 64);

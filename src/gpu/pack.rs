@@ -70,12 +70,13 @@ pub(super) struct Packed<'a> {
     pub(super) shapes: Contents<'a>,
     /// One per sphere.
     pub(super) materials: Contents<'a>,
+    /// One per sphere; empty where nothing refracts.
+    pub(super) glasses: Contents<'a>,
     /// One per light.
     pub(super) lights: Contents<'a>,
-    /// x of each sample column on the image plane, on to the end of the last tile, and then what rounding took from each.
-    pub(super) columns: Contents<'a>,
-    /// y of each sample row on the image plane, likewise.
-    pub(super) rows: Contents<'a>,
+    /// x of each sample column on the image plane, on to the end of the last tile, then y of each sample row likewise, and
+    /// then what rounding took from each.
+    pub(super) window: Contents<'a>,
     /// Six faces a light with lists.
     pub(super) faces: Contents<'a>,
     /// What rounding took from spheres and lights, for the tier that carries it.
@@ -110,14 +111,20 @@ fn pack<'a, L: Layout + 'a>(
     let camera = Camera::new(scene, settings);
     let true_axes = on(Effect::Ellipsoids);
     let indices = match settings.secondary {
-        Secondary::SkipSelf => shape_indices(&ellipsoids(scene, true_axes)),
-        Secondary::Epsilon { .. } => Vec::new(),
+        Secondary::Epsilon { .. } if !on(Effect::Refraction) => Vec::new(),
+        _ => shape_indices(&ellipsoids(scene, true_axes)),
     };
     let indices = Arc::new(indices);
     let shape = move |i: usize| {
         let index = indices.get(i).copied().unwrap_or(i as u32);
         shape_value(&ellipsoid(&scene.spheres[i], true_axes), index, true_axes)
     };
+    let columns = (0..scene.width.next_multiple_of(TILE) * settings.samples).map(|i| camera.x(i));
+    let first_row = columns.len() as u32;
+    let rows = (0..scene.height.next_multiple_of(TILE) * settings.samples).map(|j| camera.y(j));
+    let window: Vec<f64> = columns.chain(rows).collect();
+    let low = window.iter().filter(|_| with_low).map(|&x| L::residual(x));
+    let window: Vec<f64> = window.iter().copied().chain(low).collect();
     let bases = list_bases(accel);
     let params = ParamValues {
         background: scene.background,
@@ -131,18 +138,13 @@ fn pack<'a, L: Layout + 'a>(
         sphere_count: scene.spheres.len() as u32,
         light_count: scene.lights.len() as u32,
         max_depth: effects.depth,
+        first_row,
     };
     let material = move |i: usize| {
         let sphere = &scene.spheres[i];
         // Without the effect the kernel leaves out the way into object space.
         let scale = if true_axes { ellipsoid(sphere, true_axes).scale } else { DVec3::ONE };
         L::material(sphere, scale)
-    };
-    let reals = |count: u32, value: Box<dyn Fn(u32) -> f64 + Sync>| {
-        let count = count as usize;
-        let real =
-            move |i: usize| L::real(if i < count { value(i as u32) } else { L::residual(value((i - count) as u32)) });
-        Contents::new(if with_low { 2 * count } else { count }, real)
     };
     let faces = accel.lights.faces.iter().zip(bases.iter().skip(1));
     let faces: Vec<_> = faces.flat_map(|(faces, &base)| faces.map(|face| (face, base))).collect();
@@ -158,9 +160,9 @@ fn pack<'a, L: Layout + 'a>(
         params: Contents::new(1, move |_| L::params(&params)),
         shapes: Contents::new(spheres, move |i| L::shape(&shape(i))),
         materials: Contents::new(spheres, material),
+        glasses: Contents::new(if on(Effect::Refraction) { spheres } else { 0 }, |i| L::glass(&scene.spheres[i])),
         lights: Contents::new(lights.len(), |i| L::light(&lights[i])),
-        columns: reals(scene.width.next_multiple_of(TILE) * settings.samples, Box::new(move |i| camera.x(i))),
-        rows: reals(scene.height.next_multiple_of(TILE) * settings.samples, Box::new(move |j| camera.y(j))),
+        window: Contents::new(window.len(), move |i| L::real(window[i])),
         faces: Contents::new(faces.len(), move |i| L::face(&faces[i].0, faces[i].1)),
         low: with_low.then(low),
     }

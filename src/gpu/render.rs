@@ -7,12 +7,12 @@ use rayon::prelude::*;
 use super::device::Gpu;
 use super::error::Error;
 use super::pack::{Contents, Packed, list_contents};
-use super::pipeline::{MAX_FEW, MAX_LISTED_LIGHTS, MAX_UNIFORM_LIGHTS, Specialisation, Stages, compile};
+use super::pipeline::{MAX_FEW, MAX_UNIFORM_LIGHTS, Specialisation, Stage, Stages, compile};
 use super::readable::Readable;
-use super::shader::Storage;
+use super::shader::{Kernel, Storage};
 use super::timestamps::Timestamps;
 use super::upload::upload;
-use crate::accel::{Acceleration, Cover};
+use crate::accel::{Acceleration, Cover, Rounding};
 use crate::camera::Camera;
 use crate::effects::{Effect, Effects};
 use crate::geometry::in_range;
@@ -85,9 +85,11 @@ struct Inputs {
 #[derive(Debug)]
 struct Work {
     stages: Stages,
-    tiles_group: wgpu::BindGroup,
-    /// For one bounce, and for what goes between two.
-    bounce_groups: Option<[wgpu::BindGroup; 2]>,
+    see_group: wgpu::BindGroup,
+    /// For what goes between two stages.
+    between_group: wgpu::BindGroup,
+    shade_group: wgpu::BindGroup,
+    walk_group: Option<wgpu::BindGroup>,
     resolve_group: Option<wgpu::BindGroup>,
     tiles: wgpu::Buffer,
     stage: wgpu::Buffer,
@@ -99,6 +101,9 @@ struct Work {
     capacity: u32,
 }
 
+/// Bytes before the hits in the shader's `Stage`.
+const STAGE_HEAD: u64 = 32;
+
 /// Invocations of a workgroup of the kernels that are not over tiles.
 const GROUP: u64 = 64;
 
@@ -106,11 +111,23 @@ impl<'a> GpuRenderer<'a> {
     /// Prepares `scene` for `gpu`; the kernels are compiled when the first tile needs them.
     pub fn new(gpu: &'a Gpu, scene: &Scene, settings: &Settings, effects: &Effects, tier: Tier) -> Result<Self, Error> {
         let kernel = gpu.kernel(tier)?;
+        Self::with_rounding(gpu, scene, settings, effects, kernel, kernel.rounding())
+    }
+
+    /// Likewise with a kernel of one's choice, and lists of spheres for one that rounds like this.
+    pub fn with_rounding(
+        gpu: &'a Gpu,
+        scene: &Scene,
+        settings: &Settings,
+        effects: &Effects,
+        kernel: Kernel,
+        rounding: Rounding,
+    ) -> Result<Self, Error> {
         let (scene, settings) = in_range(scene, settings);
         let (scene, settings) = (scene.as_ref(), &settings);
-        let specialisation = Specialisation::new(scene, settings, effects.set, kernel);
+        let specialisation = Specialisation::new(scene, settings, effects, kernel);
         let camera = Camera::new(scene, settings);
-        let accel = Acceleration::new(scene, &camera, specialisation.listed_effects(), kernel.rounding());
+        let accel = Acceleration::new(scene, &camera, specialisation.listed_effects(), rounding);
         let packed = Packed::new(scene, settings, effects, kernel, &accel);
         let lists = list_contents(&accel);
         check_fits(gpu, &packed, &lists)?;
@@ -125,7 +142,9 @@ impl<'a> GpuRenderer<'a> {
             * (scene.spheres.len().min(64) as u64 + 1)
             * (1 + scene.lights.len() as u64 * u64::from(effects.set.has(Effect::Shadows)))
             * (1 + u64::from(effects.depth));
-        let first = FIRST_DISPATCH_TESTS / (tests_per_pixel * TILE_PIXELS as u64);
+        // A tree of rays doubles with each bounce where rays can wait.
+        let tests_per_pixel = tests_per_pixel.saturating_mul(1 << effects.waiting(scene).min(32));
+        let first = FIRST_DISPATCH_TESTS / tests_per_pixel.saturating_mul(TILE_PIXELS as u64);
         Ok(Self {
             gpu,
             cover,
@@ -237,32 +256,36 @@ impl<'a> GpuRenderer<'a> {
         self.gpu.queue.write_buffer(&work.tiles, 0, bytemuck::cast_slice(tiles));
         // The first stage's paths go into the first half.
         let half = work.capacity * TILE_PIXELS as u32 * self.samples as u32;
-        self.gpu.queue.write_buffer(&work.stage, 0, bytemuck::cast_slice(&[half, 0, 0, 0, 0]));
+        self.gpu.queue.write_buffer(&work.stage, 0, bytemuck::cast_slice(&[half, 0, 0, 0, 0, 0, 0]));
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                 label: None,
                 timestamp_writes: self.timestamps.as_ref().map(Timestamps::writes),
             });
-            pass.set_pipeline(&work.stages.tiles.pipeline);
-            pass.set_bind_group(0, &work.tiles_group, &[]);
-            pass.dispatch_workgroups(tiles.len() as u32, 1, 1);
-            if let (Some((paths, advance)), Some([paths_group, advance_group])) =
-                (&work.stages.bounces, &work.bounce_groups)
-            {
+            let mut run = |stage: &Stage, group: &wgpu::BindGroup, workgroups: Option<u32>| {
+                pass.set_pipeline(&stage.pipeline);
+                pass.set_bind_group(0, group, &[]);
+                match workgroups {
+                    Some(count) => pass.dispatch_workgroups(count, 1, 1),
+                    None => pass.dispatch_workgroups_indirect(&work.workgroups, 0),
+                }
+            };
+            let tiles = Some(tiles.len() as u32);
+            let stages = &work.stages;
+            run(&stages.see, &work.see_group, tiles);
+            run(&stages.begin_shading, &work.between_group, Some(1));
+            run(&stages.shade, &work.shade_group, None);
+            if let (Some([begin_bounce, walk]), Some(walk_group)) = (&stages.bounce, &work.walk_group) {
                 for _ in 0..self.max_depth {
-                    pass.set_pipeline(&advance.pipeline);
-                    pass.set_bind_group(0, advance_group, &[]);
-                    pass.dispatch_workgroups(1, 1, 1);
-                    pass.set_pipeline(&paths.pipeline);
-                    pass.set_bind_group(0, paths_group, &[]);
-                    pass.dispatch_workgroups_indirect(&work.workgroups, 0);
+                    run(begin_bounce, &work.between_group, Some(1));
+                    run(walk, walk_group, None);
+                    run(&stages.begin_shading, &work.between_group, Some(1));
+                    run(&stages.shade, &work.shade_group, None);
                 }
             }
-            if let (Some(resolve), Some(group)) = (&work.stages.resolve, &work.resolve_group) {
-                pass.set_pipeline(&resolve.pipeline);
-                pass.set_bind_group(0, group, &[]);
-                pass.dispatch_workgroups(tiles.len() as u32, 1, 1);
+            if let (Some(resolve), Some(group)) = (&stages.resolve, &work.resolve_group) {
+                run(resolve, group, tiles);
             }
         }
         if let Some(timestamps) = &self.timestamps {
@@ -324,21 +347,24 @@ impl Work {
         let color_size = if specialisation.kernel.is_double() { 32 } else { 16 };
         let paths = empty(paths, storage);
         let tiles = empty(u64::from(capacity) * 8, storage | wgpu::BufferUsages::COPY_DST);
-        let stage = empty(20, storage | wgpu::BufferUsages::COPY_DST);
+        let stage = empty(STAGE_HEAD + 8 * slots, storage | wgpu::BufferUsages::COPY_DST);
         let workgroups = empty(12, storage | wgpu::BufferUsages::INDIRECT);
         let colors = stages.resolve.as_ref().map(|_| empty(slots * color_size, storage));
         let results = colors.as_ref().unwrap_or(&pixels.buffer);
         let mut all: Vec<_> = buffers.iter().map(|(binding, buffer)| (*binding, buffer)).collect();
         all.extend([(6, &tiles), (7, results), (8, &ray_counts.buffer), (12, &stage), (15, &pixels.buffer)]);
         all.extend([(11, &paths), (16, &workgroups)]);
-        let tiles_group = stages.tiles.bind(gpu, &all);
-        let bounce_groups =
-            stages.bounces.as_ref().map(|(paths, advance)| [paths.bind(gpu, &all), advance.bind(gpu, &all)]);
+        let see_group = stages.see.bind(gpu, &all);
+        let between_group = stages.begin_shading.bind(gpu, &all);
+        let shade_group = stages.shade.bind(gpu, &all);
+        let walk_group = stages.bounce.as_ref().map(|[_, walk]| walk.bind(gpu, &all));
         let resolve_group = stages.resolve.as_ref().map(|resolve| resolve.bind(gpu, &all));
         Self {
             stages,
-            tiles_group,
-            bounce_groups,
+            see_group,
+            between_group,
+            shade_group,
+            walk_group,
             resolve_group,
             tiles,
             stage,
@@ -371,16 +397,22 @@ fn scene_buffers(
         Storage::Many => fixed(contents, MAX_UNIFORM_LIGHTS),
         _ => filled(contents, storage),
     };
+    let faces = |contents: &Contents| match specialisation.storage {
+        Storage::ManyLights => filled(contents, storage),
+        _ => fixed(contents, 6 * MAX_UNIFORM_LIGHTS),
+    };
     let mut buffers = vec![
         (0, filled(&packed.params, uniform)?),
         (1, shapes(&packed.shapes)?),
         (2, filled(&packed.materials, storage)?),
         (3, lights(&packed.lights)?),
-        (4, filled(&packed.columns, storage)?),
-        (5, filled(&packed.rows, storage)?),
+        (4, filled(&packed.window, storage)?),
         (13, lists),
-        (14, fixed(&packed.faces, 6 * MAX_LISTED_LIGHTS)?),
+        (14, faces(&packed.faces)?),
     ];
+    if specialisation.refraction.is_some() {
+        buffers.push((5, filled(&packed.glasses, storage)?));
+    }
     if let Some([low_shapes, low_lights]) = &packed.low {
         buffers.extend([(9, shapes(low_shapes)?), (10, lights(low_lights)?)]);
     }
@@ -392,8 +424,8 @@ fn check_fits(gpu: &Gpu, packed: &Packed, lists: &Contents) -> Result<(), Error>
     let sizes = [
         ("spheres", packed.materials.len().max(packed.shapes.len())),
         ("lights", packed.lights.len()),
-        ("columns", packed.columns.len()),
-        ("rows", packed.rows.len()),
+        ("columns and rows", packed.window.len()),
+        ("faces around the lights", packed.faces.len()),
         ("lists", lists.len()),
     ];
     let limit = gpu.info.max_storage_binding.min(gpu.info.max_buffer);
