@@ -1,20 +1,12 @@
-//! Which tiles of the picture any sphere can cover: the others are background and need no ray.
+//! Where on the picture a sphere can be: what none covers is background and needs no ray.
 
 use glam::DVec3;
 
 use crate::camera::Camera;
-use crate::geometry::{Ellipsoid, ellipsoids};
-use crate::scene::Scene;
+use crate::geometry::Ellipsoid;
 
 /// Edge of a tile in pixels; the workgroup of the render kernel has this size in both directions.
 pub const TILE: u32 = 8;
-
-/// Conservative bounds of all spheres on the picture.
-#[derive(Debug, Clone)]
-pub struct Cover {
-    bounds: Vec<Bounds>,
-    camera: Camera,
-}
 
 /// Where one sphere can be on the picture.
 #[derive(Debug, Clone)]
@@ -25,36 +17,6 @@ pub(crate) struct Bounds {
     pub(crate) rows: [u32; 2],
     /// Its outline, where the sphere is large enough for the corners of the rectangle to matter.
     outline: Option<Box<Outline>>,
-}
-
-impl Cover {
-    /// Projects the spheres of `scene`; without `true_axes` their bounding spheres.
-    pub fn new(scene: &Scene, camera: &Camera, true_axes: bool) -> Self {
-        let project = |e: &Ellipsoid| Bounds::new(e.center, e.scale * e.radius, camera);
-        Self { bounds: ellipsoids(scene, true_axes).iter().filter_map(project).collect(), camera: *camera }
-    }
-
-    /// Top-left pixels of the covered tiles in rows `first` to `first + count`, in reading order; `first` is a multiple of
-    /// [`TILE`].
-    pub fn tiles(&self, first: u32, count: u32) -> Vec<[u32; 2]> {
-        let last = (first + count).min(self.camera.height()) - 1;
-        let across = self.camera.width().div_ceil(TILE);
-        let (top, down) = (first / TILE, last / TILE - first / TILE + 1);
-        let mut covered = vec![false; across as usize * down as usize];
-        for bounds in &self.bounds {
-            let [upper, lower] = bounds.rows;
-            if lower < first || upper > last {
-                continue;
-            }
-            for row in upper.max(first) / TILE..=lower.min(last) / TILE {
-                let [left, right] = bounds.columns_in([row * TILE, (row + 1) * TILE], &self.camera);
-                let start = (row - top) as usize * across as usize;
-                covered[start + (left / TILE) as usize..=start + (right / TILE) as usize].fill(true);
-            }
-        }
-        let place = |index: usize| [index as u32 % across * TILE, (top + index as u32 / across) * TILE];
-        covered.iter().enumerate().filter(|&(_, &covered)| covered).map(|(index, _)| place(index)).collect()
-    }
 }
 
 impl Bounds {
