@@ -1,6 +1,7 @@
 //! Lists for shadow rays: all those to one light share an end, so directions from the light are binned like the picture's
 //! pixels (Haines, Greenberg, "The Light Buffer: A Shadow-Testing Accelerator", 1986).
 
+use bytemuck::{Zeroable, zeroed_vec};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -117,7 +118,7 @@ fn key(distance: f32, sphere: usize) -> Key {
 }
 
 /// Cells of a face, in one word: the face, first column and row, last column and row.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Zeroable)]
 struct Rectangle(u64);
 
 impl Rectangle {
@@ -197,7 +198,7 @@ impl Around {
 
         // As many places for each task as it found faces.
         let lens = found.iter().map(|extents| extents.iter().map(|extent| extent.count).sum::<f64>() as usize);
-        let mut reaches = vec![(0, Rectangle(0)); lens.clone().sum()];
+        let mut reaches: Vec<(Key, Rectangle)> = zeroed_vec(lens.clone().sum());
         let mut rest = reaches.as_mut_slice();
         let parts: Vec<_> = lens.map_while(|len| rest.split_off_mut(..len)).collect();
         parts.into_par_iter().enumerate().for_each(|(chunk, part)| {

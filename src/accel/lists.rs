@@ -1,5 +1,6 @@
 //! Lists of spheres, one for each cell of whatever space is cut into cells.
 
+use bytemuck::{Zeroable, zeroed_vec};
 use rayon::prelude::*;
 
 /// How spheres fall into cells.
@@ -17,7 +18,7 @@ pub(super) trait Binning: Sync {
 }
 
 /// Cells of one sphere, side by side in one bucket.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Zeroable)]
 struct Run {
     sphere: u32,
     first: u16,
@@ -70,7 +71,7 @@ impl Lists {
         // By chunk, and by bucket in each.
         let counts: Vec<Vec<Count>> = (0..chunks).into_par_iter().map(count).collect();
         // Bucket by bucket, and chunk by chunk in each: all in the order of ranks.
-        let mut runs = vec![Run::default(); counts.iter().flatten().map(|count| count.runs).sum()];
+        let mut runs: Vec<Run> = zeroed_vec(counts.iter().flatten().map(|count| count.runs).sum());
         let mut places: Vec<Vec<&mut [Run]>> = counts.iter().map(|_| Vec::with_capacity(buckets.count)).collect();
         let mut rest = runs.as_mut_slice();
         for bucket in 0..buckets.count {
