@@ -1,4 +1,4 @@
-//! Which part of the picture a sphere can cover.
+//! Where on the picture a sphere can be: what none covers is background and needs no ray.
 
 use glam::DVec3;
 

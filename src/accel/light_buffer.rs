@@ -1,6 +1,7 @@
 //! Lists for shadow rays: all those to one light share an end, so directions from the light are binned like the picture's
 //! pixels (Haines, Greenberg, "The Light Buffer: A Shadow-Testing Accelerator", 1986).
 
+use bytemuck::{Zeroable, zeroed_vec};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -30,6 +31,19 @@ pub struct Face {
     pub cells: [u32; 2],
     /// Index of the first cell among those of the light.
     pub first: u32,
+}
+
+impl Face {
+    /// The cells that ranges of u and v meet on this face, which is number `index`.
+    fn rectangle(&self, index: usize, ranges: [[f64; 2]; 2]) -> Rectangle {
+        let place = |axis: usize, end: usize, margin: f64| {
+            let cell = (ranges[axis][end] - self.low[axis]) * self.per_unit + margin;
+            cell.clamp(0.0, f64::from(self.cells[axis] - 1)) as u32
+        };
+        let [low, high] =
+            [(0, -CELL_MARGIN), (1, CELL_MARGIN)].map(|(end, margin)| [place(0, end, margin), place(1, end, margin)]);
+        Rectangle::new(index, [low[0], low[1], high[0], high[1]])
+    }
 }
 
 /// Lists for one or more lights: spheres in ascending order of their least distance from the light.
@@ -103,17 +117,8 @@ fn key(distance: f32, sphere: usize) -> Key {
     u64::from(ascending) << 32 | sphere as u64
 }
 
-/// Ranges of u and v on a face, with their errors.
-#[derive(Debug, Clone, Copy)]
-struct Range {
-    key: Key,
-    face: usize,
-    /// Least and greatest u, and v.
-    ends: [[f32; 2]; 2],
-}
-
 /// Cells of a face, in one word: the face, first column and row, last column and row.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Zeroable)]
 struct Rectangle(u64);
 
 impl Rectangle {
@@ -172,47 +177,47 @@ impl Extent {
 const CHUNK: usize = 4096;
 
 impl Around {
+    /// Looks at each sphere twice: keeping its ranges until the faces are cut would take twice as much memory.
     fn new(enclosure: &Enclosure, light: DVec3, entries: u64, rounding: Rounding) -> Self {
-        // What rounding the ranges to f32 takes is less than 1e-7.
-        let error = 8.0 * rounding.lookups + 1e-7;
+        let error = 8.0 * rounding.lookups;
         let count = enclosure.len();
-        let chunk = |chunk: usize| find(enclosure, light, error, chunk * CHUNK..count.min((chunk + 1) * CHUNK));
-        let found: Vec<_> = (0..count.div_ceil(CHUNK)).into_par_iter().map(chunk).collect();
-        let union = |a: [Extent; 6], b: &[Extent; 6]| std::array::from_fn(|face| Extent::union(a[face], b[face]));
-        let extents = found.iter().map(|(_, extents)| extents).fold([Extent::EMPTY; 6], union);
-        let (faces, cells) = cut(&extents, entries, error);
-        let rectangle = |range: Range| {
-            let face = &faces[range.face];
-            let place = |axis: usize, end: usize, margin: f64| {
-                let cell = (f64::from(range.ends[axis][end]) - face.low[axis]) * face.per_unit + margin;
-                cell.clamp(0.0, f64::from(face.cells[axis] - 1)) as u32
-            };
-            let [low, high] = [(0, -CELL_MARGIN), (1, CELL_MARGIN)]
-                .map(|(end, margin)| [place(0, end, margin), place(1, end, margin)]);
-            (range.key, Rectangle::new(range.face, [low[0], low[1], high[0], high[1]]))
+        let spheres = |chunk: usize| chunk * CHUNK..count.min((chunk + 1) * CHUNK);
+        let extents = |chunk: usize| {
+            let mut extents = [Extent::EMPTY; 6];
+            for sphere in spheres(chunk) {
+                let Solid { center, semi_axes } = enclosure.solid(sphere);
+                for_each_face(center - light, semi_axes, error, |face, ranges| {
+                    extents[face] = extents[face].with(ranges);
+                });
+            }
+            extents
         };
-        let mut reaches: Vec<_> = found.into_par_iter().flat_map_iter(|(ranges, _)| ranges).map(rectangle).collect();
+        let found: Vec<[Extent; 6]> = (0..count.div_ceil(CHUNK)).into_par_iter().map(extents).collect();
+        let union = |a: [Extent; 6], b: &[Extent; 6]| std::array::from_fn(|face| Extent::union(a[face], b[face]));
+        let (faces, cells) = cut(&found.iter().fold([Extent::EMPTY; 6], union), entries, error);
+
+        // As many places for each task as it found faces.
+        let lens = found.iter().map(|extents| extents.iter().map(|extent| extent.count).sum::<f64>() as usize);
+        let mut reaches: Vec<(Key, Rectangle)> = zeroed_vec(lens.clone().sum());
+        let mut rest = reaches.as_mut_slice();
+        let parts: Vec<_> = lens.map_while(|len| rest.split_off_mut(..len)).collect();
+        parts.into_par_iter().enumerate().for_each(|(chunk, part)| {
+            let mut places = part.iter_mut();
+            for sphere in spheres(chunk) {
+                let Solid { center, semi_axes } = enclosure.solid(sphere);
+                let from_light = center - light;
+                // As the kernels calculate it: what they leave out must follow in the list.
+                let key = key((from_light.length() - enclosure.radius(sphere) * REACH) as f32, sphere);
+                for_each_face(from_light, semi_axes, error, |face, ranges| {
+                    if let Some(place) = places.next() {
+                        *place = (key, faces[face].rectangle(face, ranges));
+                    }
+                });
+            }
+        });
         reaches.par_sort_unstable_by_key(|&(key, _)| key);
         Self { faces, reaches, cells }
     }
-}
-
-/// Looks from the light at some of the spheres.
-fn find(enclosure: &Enclosure, light: DVec3, error: f64, spheres: std::ops::Range<usize>) -> (Vec<Range>, [Extent; 6]) {
-    let mut found = Vec::with_capacity(spheres.len());
-    let mut extents = [Extent::EMPTY; 6];
-    for sphere in spheres {
-        let Solid { center, semi_axes } = enclosure.solid(sphere);
-        let from_light = center - light;
-        // As the kernels calculate it, with the axes as they are: what they leave out must follow in the list.
-        let key = key((from_light.length() - enclosure.radius(sphere) * REACH) as f32, sphere);
-        for_each_face(from_light, semi_axes, |face, ranges| {
-            let ranges = ranges.map(|[low, high]| [low - error, high + error]);
-            extents[face] = extents[face].with(ranges);
-            found.push(Range { key, face, ends: ranges.map(|range| range.map(|x| x as f32)) });
-        });
-    }
-    (found, extents)
 }
 
 /// The cells, so that all lists together have no more than about so many entries, and their number.
@@ -243,8 +248,8 @@ fn cut(extents: &[Extent; 6], entries: u64, error: f64) -> ([Face; 6], usize) {
     (faces, next as usize)
 }
 
-/// Hands each face that sees the solid to `emit`, with the ranges of u and v.
-fn for_each_face(from_light: DVec3, semi_axes: DVec3, mut emit: impl FnMut(usize, [[f64; 2]; 2])) {
+/// Hands each face that sees the solid to `emit`, with the ranges of u and v, wider by `error` at each end.
+fn for_each_face(from_light: DVec3, semi_axes: DVec3, error: f64, mut emit: impl FnMut(usize, [[f64; 2]; 2])) {
     for axis in 0..3 {
         let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
         let depth = semi_axes[axis];
@@ -257,7 +262,7 @@ fn for_each_face(from_light: DVec3, semi_axes: DVec3, mut emit: impl FnMut(usize
             }
             let range = |across: usize| slopes(from_light[across], ahead, semi_axes[across], depth);
             if let (Some(u), Some(v)) = (range(u), range(v)) {
-                emit(face, [u, v]);
+                emit(face, [u, v].map(|[low, high]| [low - error, high + error]));
             }
         }
     }

@@ -1,5 +1,6 @@
 //! Lists of spheres, one for each cell of whatever space is cut into cells.
 
+use bytemuck::{Zeroable, zeroed_vec};
 use rayon::prelude::*;
 
 /// How spheres fall into cells.
@@ -17,7 +18,7 @@ pub(super) trait Binning: Sync {
 }
 
 /// Cells of one sphere, side by side in one bucket.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Zeroable)]
 struct Run {
     sphere: u32,
     first: u16,
@@ -55,56 +56,114 @@ impl Lists {
         self.offsets.len().saturating_sub(1)
     }
 
-    /// The lists of `binning`: first the spheres' cells in buckets of neighbours, then a counting sort within each. The result
-    /// does not depend on the number of threads.
+    /// The lists of `binning`: first the spheres' cells in buckets of neighbours, then a counting sort within each. Runs are
+    /// counted before they are kept, in an array of just their number. The result does not depend on the number of threads.
     pub(super) fn build(binning: &impl Binning) -> Self {
-        let shift = binning.cells().div_ceil(BUCKETS).next_power_of_two().trailing_zeros().min(MAX_BUCKET);
-        let bucket_cells = 1 << shift;
-        let buckets = binning.cells().div_ceil(bucket_cells);
+        let buckets = Buckets::of(binning);
         let chunks = (2 * rayon::current_num_threads()).min(binning.len().div_ceil(1024).max(1));
-        let expected = 3 * binning.len() / (chunks * buckets).max(1);
-        let chunk = |chunk: usize| {
-            let mut runs: Vec<Vec<Run>> =
-                std::iter::repeat_with(|| Vec::with_capacity(expected)).take(buckets).collect();
-            for rank in binning.len() * chunk / chunks..binning.len() * (chunk + 1) / chunks {
-                let sphere = binning.sphere(rank);
-                binning.visit(rank, &mut |mut first, last| {
-                    while first <= last {
-                        let (bucket, end) = (first >> shift, (first | (bucket_cells - 1)).min(last));
-                        let place = |cell: usize| (cell & (bucket_cells - 1)) as u16;
-                        runs[bucket].push(Run { sphere, first: place(first), last: place(end) });
-                        first = end + 1;
-                    }
-                });
-            }
-            runs
-        };
-        let runs: Vec<Vec<Vec<Run>>> = (0..chunks).into_par_iter().map(chunk).collect();
+        let ranks = |chunk: usize| binning.len() * chunk / chunks..binning.len() * (chunk + 1) / chunks;
 
-        let len = |bucket: usize| runs.iter().flat_map(|chunk| &chunk[bucket]).map(|run| run.cells().count()).sum();
-        let lens: Vec<usize> = (0..buckets).into_par_iter().map(len).collect();
-        let mut lists = Self { offsets: vec![0; binning.cells() + 1], entries: vec![0; lens.iter().sum()] };
-        let mut base = 0;
-        let mut offsets = &mut lists.offsets[1..];
-        let mut entries = lists.entries.as_mut_slice();
-        let mut tasks = Vec::with_capacity(buckets);
-        for (bucket, len) in lens.into_iter().enumerate() {
-            let (ends, later_offsets) = offsets.split_at_mut(offsets.len().min(bucket_cells));
-            let (own, later_entries) = entries.split_at_mut(len);
-            tasks.push((bucket, base as u32, ends, own));
-            (offsets, entries, base) = (later_offsets, later_entries, base + len);
+        let count = |chunk: usize| {
+            let mut counts = vec![Count::default(); buckets.count];
+            buckets.visit(binning, ranks(chunk), |bucket, run| counts[bucket].add(run));
+            counts
+        };
+        // By chunk, and by bucket in each.
+        let counts: Vec<Vec<Count>> = (0..chunks).into_par_iter().map(count).collect();
+        // Bucket by bucket, and chunk by chunk in each: all in the order of ranks.
+        let mut runs: Vec<Run> = zeroed_vec(counts.iter().flatten().map(|count| count.runs).sum());
+        let mut places: Vec<Vec<&mut [Run]>> = counts.iter().map(|_| Vec::with_capacity(buckets.count)).collect();
+        let mut rest = runs.as_mut_slice();
+        for bucket in 0..buckets.count {
+            for (places, counts) in places.iter_mut().zip(&counts) {
+                places.extend(rest.split_off_mut(..counts[bucket].runs));
+            }
         }
-        tasks.into_par_iter().for_each(|(bucket, base, ends, entries)| {
-            let runs = || runs.iter().flat_map(|chunk| &chunk[bucket]);
-            fill(runs, base, ends, entries);
+        places.into_par_iter().enumerate().for_each(|(chunk, mut places)| {
+            buckets.visit(binning, ranks(chunk), |bucket, run| {
+                if let Some(place) = places[bucket].split_off_first_mut() {
+                    *place = run;
+                }
+            });
         });
+
+        let total = |bucket: usize| counts.iter().map(|counts| counts[bucket]).fold(Count::default(), Count::plus);
+        let totals: Vec<Count> = (0..buckets.count).map(total).collect();
+        let mut lists = Self {
+            offsets: vec![0; binning.cells() + 1],
+            entries: vec![0; totals.iter().map(|total| total.cells).sum()],
+        };
+        let (mut offsets, mut entries, mut runs) =
+            (&mut lists.offsets[1..], lists.entries.as_mut_slice(), runs.as_slice());
+        let mut tasks = Vec::with_capacity(buckets.count);
+        let mut base = 0;
+        for total in totals {
+            let (ends, later_offsets) = offsets.split_at_mut(offsets.len().min(buckets.cells()));
+            let (own, later_entries) = entries.split_at_mut(total.cells);
+            let (own_runs, later_runs) = runs.split_at(total.runs);
+            tasks.push((own_runs, base, ends, own));
+            (offsets, entries, runs) = (later_offsets, later_entries, later_runs);
+            base += total.cells as u32;
+        }
+        tasks.into_par_iter().for_each(|(runs, base, ends, entries)| fill(runs, base, ends, entries));
         lists
     }
 }
 
+/// How many runs, and how many cells they have together.
+#[derive(Debug, Clone, Copy, Default)]
+struct Count {
+    runs: usize,
+    cells: usize,
+}
+
+impl Count {
+    fn add(&mut self, run: Run) {
+        *self = self.plus(Self { runs: 1, cells: run.cells().count() });
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self { runs: self.runs + other.runs, cells: self.cells + other.cells }
+    }
+}
+
+/// Buckets of neighbouring cells.
+struct Buckets {
+    count: usize,
+    /// Cells of a bucket, as a power of two.
+    shift: u32,
+}
+
+impl Buckets {
+    fn of(binning: &impl Binning) -> Self {
+        let shift = binning.cells().div_ceil(BUCKETS).next_power_of_two().trailing_zeros().min(MAX_BUCKET);
+        Self { count: binning.cells().div_ceil(1 << shift), shift }
+    }
+
+    fn cells(&self) -> usize {
+        1 << self.shift
+    }
+
+    /// Hands the runs of the spheres with these ranks to `emit`, each with its bucket.
+    fn visit(&self, binning: &impl Binning, ranks: std::ops::Range<usize>, mut emit: impl FnMut(usize, Run)) {
+        let last_place = self.cells() - 1;
+        let place = |cell: usize| (cell & last_place) as u16;
+        for rank in ranks {
+            let sphere = binning.sphere(rank);
+            binning.visit(rank, &mut |mut first, last| {
+                while first <= last {
+                    let end = (first | last_place).min(last);
+                    emit(first >> self.shift, Run { sphere, first: place(first), last: place(end) });
+                    first = end + 1;
+                }
+            });
+        }
+    }
+}
+
 /// Sorts the cells of `runs` into `entries`; `ends` gets where each cell's list ends, counted from `base` before the first.
-fn fill<'a, I: Iterator<Item = &'a Run>>(runs: impl Fn() -> I, base: u32, ends: &mut [u32], entries: &mut [u32]) {
-    for run in runs() {
+fn fill(runs: &[Run], base: u32, ends: &mut [u32], entries: &mut [u32]) {
+    for run in runs {
         ends[run.cells()].iter_mut().for_each(|count| *count += 1);
     }
     // From counts to beginnings, which become ends as the lists fill.
@@ -112,7 +171,7 @@ fn fill<'a, I: Iterator<Item = &'a Run>>(runs: impl Fn() -> I, base: u32, ends: 
     for end in &mut *ends {
         (next, *end) = (next + *end, next);
     }
-    for run in runs() {
+    for run in runs {
         for place in &mut ends[run.cells()] {
             entries[*place as usize] = run.sphere;
             *place += 1;

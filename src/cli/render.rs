@@ -124,14 +124,19 @@ fn render_one(
     let backend = gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, selection.tier));
 
     let mut engine = Engine::new(backend, scene, settings, &effects)?;
+    // The renderer has what it needs: the spheres go before paths and pixels take memory.
+    let (width, height) = (scene.width, scene.height);
+    let (spheres, lights) = (scene.spheres.len(), scene.lights.len());
+    drop(loaded.scene);
+
     let wants_stats = args.stats || args.stats_json.is_some();
     if wants_stats && !args.no_ray_counts {
         engine.count_rays();
     }
-    let mut writer = PictureWriter::create(&target, format, scene.width, scene.height)?;
+    let mut writer = PictureWriter::create(&target, format, width, height)?;
     let mut write_time = Duration::ZERO;
-    let mut progress = Progress::new(if args.quiet { Style::None } else { args.progress }, &loaded.name, scene.height);
-    let not_finite = render_bands(&mut engine, (scene.width, scene.height), |band| {
+    let mut progress = Progress::new(if args.quiet { Style::None } else { args.progress }, &loaded.name, height);
+    let not_finite = render_bands(&mut engine, (width, height), |band| {
         let start = Instant::now();
         writer.write_rows(band.rgb)?;
         write_time += start.elapsed();
@@ -149,10 +154,10 @@ fn render_one(
     let stats = Stats {
         scene: loaded.name.clone(),
         output: target.to_string(),
-        width: scene.width,
-        height: scene.height,
-        spheres: scene.spheres.len(),
-        lights: scene.lights.len(),
+        width,
+        height,
+        spheres,
+        lights,
         device: device_name(gpu),
         settings: *settings,
         effects,

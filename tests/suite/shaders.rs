@@ -256,8 +256,8 @@ fn the_device_reads_every_field_where_the_host_wrote_it() {
         expected[0].extend(grid.per_unit.to_array().map(single));
         expected[0].push(accel.screen.across);
         expected[0].extend(grid.cells.to_array());
-        let offsets = accel.screen.lists.offsets.len()
-            + accel.lights.lists.iter().map(|lists| lists.offsets.len()).sum::<usize>();
+        let before_grid = std::iter::once(&accel.screen.lists).chain(&accel.lights.lists);
+        let offsets: usize = before_grid.map(|lists| lists.offsets.len()).sum();
         expected[0].extend([offsets as u32, 2, 1, 5, 0]);
         assert_eq!(echo_layout(&gpu, &scene, &settings, &effects, kernel).unwrap(), expected.concat(), "{kernel:?}");
     }
