@@ -7,8 +7,9 @@
 var<private> shadow_rays: u32;
 var<private> reflection_rays: u32;
 
-fn keep_counts(slot: u32, before: u32) {
+fn add_counts(slot: u32) {
     if COUNT_RAYS {
+        let before = ray_counts[slot];
         let shadow = min(shadow_rays + (before & 0xffffu), 0xffffu);
         let reflection = min(reflection_rays + (before >> 16u), 0xffffu);
         ray_counts[slot] = shadow | (reflection << 16u);

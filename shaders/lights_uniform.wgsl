@@ -1,5 +1,5 @@
 // Not too many lights, in uniform buffers. The lengths are MAX_UNIFORM_LIGHTS in src/gpu/pipeline.rs.
 
-@group(0) @binding(3) var<uniform> lights: array<Light, 256>;
+@group(0) @binding(3) var<uniform> lights: array<Light, 32>;
 // What rounding took from each of their numbers, for the tiers that carry it.
-@group(0) @binding(10) var<uniform> lights_low: array<Light, 256>;
+@group(0) @binding(10) var<uniform> lights_low: array<Light, 32>;

@@ -14,9 +14,6 @@ struct Face {
 
 // Lists of spheres: the offsets of all lists, then the entries. Offsets count from the beginning of the buffer.
 @group(0) @binding(13) var<storage, read> lists: array<u32>;
-// Six of each light. The length is MAX_LISTED_LIGHTS in src/gpu/pipeline.rs.
-@group(0) @binding(14) var<uniform> faces: array<Face, 192>;
-
 // Radii that a sphere reaches towards a light, rounding included: REACH in src/accel/light_buffer.rs.
 const REACH: real = real(1.01);
 
@@ -30,32 +27,43 @@ fn nearer_of(nearest: Hit, ray: Ray, sphere: u32, own: Own, range: Range) -> Hit
     return nearest;
 }
 
+// Loops below break at the end of their body: compilers for software devices run the body once more, in vain, where the
+// condition stands at the beginning, and take a continuing block for the beginning.
+
+// The nearer of a hit and the intersections with one list of spheres, whose place in `lists` is at this offset.
+fn nearest_in(offset: u32, before: Hit, ray: Ray, own: Own, range: Range) -> Hit {
+    var nearest = before;
+    var at = lists[offset];
+    let end = lists[offset + 1u];
+    if at < end {
+        loop {
+            nearest = nearer_of(nearest, ray, lists[at], own, range);
+            at++;
+            if at == end {
+                break;
+            }
+        }
+    }
+    return nearest;
+}
+
 // The nearest intersection of a primary ray through the tile of this pixel.
 fn nearest_seen(ray: Ray, pixel: vec2<u32>) -> Hit {
     let own = Own(NO_SHAPE, false, vec3r());
     let range = primary_range();
     let tile = pixel >> vec2(params.screen_shift);
     let offset = tile.y * params.screen_across + tile.x;
-    var nearest = no_hit();
-    let end = lists[offset + 1u];
-    for (var at = lists[offset]; at < end; at++) {
-        nearest = nearer_of(nearest, ray, lists[at], own, range);
-    }
-    return nearest;
+    return nearest_in(offset, no_hit(), ray, own, range);
 }
 
-// The nearest intersection of a reflection ray: a walk through a grid (Amanatides, Woo, "A Fast Voxel Traversal Algorithm for
+// The nearest intersection of a ray that leaves a surface: a walk through a grid (Amanatides, Woo, "A Fast Voxel Traversal Algorithm for
 // Ray Tracing", 1987).
-fn nearest_reflected(ray: Ray, own: Own) -> Hit {
-    let range = reflection_range();
+fn nearest_secondary(ray: Ray, own: Own, range: Range) -> Hit {
     let cells = vec3<i32>(params.grid_cells);
     var nearest = no_hit();
     // The last list has the spheres that are too large for the cells.
     let large = params.grid_offsets + params.grid_cells.x * params.grid_cells.y * params.grid_cells.z;
-    let large_end = lists[large + 1u];
-    for (var at = lists[large]; at < large_end; at++) {
-        nearest = nearer_of(nearest, ray, lists[at], own, range);
-    }
+    nearest = nearest_in(large, nearest, ray, own, range);
 
     // In cells.
     let origin = offset_from(ray.origin, params.grid_low) * params.grid_per_unit;
@@ -71,12 +79,11 @@ fn nearest_reflected(ray: Ray, own: Own) -> Hit {
     var cell = vec3<i32>(clamp(floor(origin + direction * enter), vec3<f32>(), vec3<f32>(cells - 1)));
     let step = select(vec3<i32>(-1), vec3<i32>(1), inverse >= vec3<f32>());
     let strides = vec3<i32>(1, cells.x, cells.x * cells.y);
-    while inside {
-        let offset = params.grid_offsets + u32(dot(cell, strides));
-        let end = lists[offset + 1u];
-        for (var at = lists[offset]; at < end; at++) {
-            nearest = nearer_of(nearest, ray, lists[at], own, range);
-        }
+    if !inside {
+        return nearest;
+    }
+    loop {
+        nearest = nearest_in(params.grid_offsets + u32(dot(cell, strides)), nearest, ray, own, range);
         // From the place of the wall, since a sum would drift.
         let next = (vec3<f32>(cell + max(step, vec3<i32>())) - origin) * inverse;
         // Whatever the comparisons say, of NaN even, one axis is taken, so that the walk ends.
@@ -88,6 +95,9 @@ fn nearest_reflected(ray: Ray, own: Own) -> Hit {
         // The hits in later cells are good to far less than this part.
         let is_done = nearest.found && nearest_real(nearest.t) * real(1.0009765625) < real(exit);
         inside = !is_done && all(cell >= vec3<i32>()) && all(cell < cells);
+        if !inside {
+            break;
+        }
     }
     return nearest;
 }
@@ -128,14 +138,18 @@ fn any_hit(ray: Ray, own: Own, light: u32) -> bool {
     let from_light = -direction_of(ray);
     let list = light_list(light, from_light);
     let distance = sqrt(dot(from_light, from_light)) + params.light_slack;
-    for (var at = list.x; at < list.y; at++) {
-        let sphere = lists[at];
-        if is_behind(ray, sphere, light, distance) {
-            break;
-        }
-        if blocks(ray, sphere, own) {
-            return true;
+    var blocked = false;
+    var at = list.x;
+    if at < list.y {
+        loop {
+            let sphere = lists[at];
+            let is_last = is_behind(ray, sphere, light, distance);
+            blocked = !is_last && blocks(ray, sphere, own);
+            at++;
+            if is_last || blocked || at == list.y {
+                break;
+            }
         }
     }
-    return false;
+    return blocked;
 }

@@ -94,6 +94,23 @@ fn probe_bounce(@builtin(global_invocation_id) id: vec3<u32>) {
     probe_values[id.x] = nearest_real(hit.t);
 }
 
+// The hit after the path of the refraction ray through as many surfaces as the ray's third word says.
+@compute @workgroup_size(64)
+fn probe_refract(@builtin(global_invocation_id) id: vec3<u32>) {
+    let words = probe_words[id.x];
+    var own = probe_own(words);
+    var ray = probe_ray(id.x);
+    var hit = nearest_hit(ray, own, reflection_range());
+    for (var bounce = 0u; bounce < words.z && hit.found; bounce++) {
+        let refracted = refraction_ray(ray, surface_at(ray, hit));
+        ray = refracted.ray;
+        own = refracted.own;
+        hit = nearest_hit(ray, own, refraction_range());
+    }
+    probe_flags[id.x] = vec2<u32>(hit_bits(hit), hit.sphere);
+    probe_values[id.x] = nearest_real(hit.t);
+}
+
 // The specular power of d and n.
 @compute @workgroup_size(64)
 fn probe_power(@builtin(global_invocation_id) id: vec3<u32>) {

@@ -59,27 +59,33 @@ fn local_color(surface: Surface) -> vec3r {
         color = params.ambient * material.color * material.ka;
     }
     if DIFFUSE || SPECULAR {
-        for (var index = 0u; index < light_count(); index++) {
+        var index = 0u;
+        if index == light_count() {
+            return color;
+        }
+        loop {
             let shadow_ray = ray_to_light(surface.position, index);
             let to_light = direction_of(shadow_ray) * (real(1.0) / sqrt(shadow_ray.a));
             let n_dot_l = dot(surface.normal, to_light);
             // Not lit from behind, and not by a light at distance 0, where N.L is NaN.
-            if !(n_dot_l > real(0.0)) {
-                continue;
-            }
-            if SHADOWS {
+            var is_lit = n_dot_l > real(0.0);
+            if SHADOWS && is_lit {
                 if COUNT_RAYS {
                     shadow_rays++;
                 }
-                if any_hit(shadow_ray, surface.own, index) {
-                    continue;
+                is_lit = !any_hit(shadow_ray, surface.own, index);
+            }
+            if is_lit {
+                if DIFFUSE {
+                    color += lights[index].intensity * material.color * (material.kd * n_dot_l);
+                }
+                if SPECULAR {
+                    color += lights[index].intensity * specular_term(surface, material, to_light, n_dot_l);
                 }
             }
-            if DIFFUSE {
-                color += lights[index].intensity * material.color * (material.kd * n_dot_l);
-            }
-            if SPECULAR {
-                color += lights[index].intensity * specular_term(surface, material, to_light, n_dot_l);
+            index++;
+            if index == light_count() {
+                break;
             }
         }
     }

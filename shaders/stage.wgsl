@@ -1,10 +1,13 @@
-// Between two bounces: what was next is now.
+// From one stage to the next: what was gathered is now to be done.
 
+// As in stages.wgsl, without what only that needs.
 struct Stage {
     first: u32,
     next_first: u32,
-    count: u32,
-    next_count: u32,
+    path_count: u32,
+    next_path_count: u32,
+    hit_count: u32,
+    next_hit_count: u32,
     bounce: u32,
 }
 
@@ -12,15 +15,28 @@ struct Stage {
 // Workgroups of the next dispatch.
 @group(0) @binding(16) var<storage, read_write> workgroups: array<u32, 3>;
 
+fn dispatch_over(count: u32) {
+    workgroups[0] = (count + 63u) / 64u;
+    workgroups[1] = 1u;
+    workgroups[2] = 1u;
+}
+
+// Rays have been cast; hits are next.
 @compute @workgroup_size(1)
-fn advance() {
+fn begin_shading() {
+    stage.hit_count = stage.next_hit_count;
+    stage.next_hit_count = 0u;
+    dispatch_over(stage.hit_count);
+}
+
+// Hits have been shaded; their paths are next.
+@compute @workgroup_size(1)
+fn begin_bounce() {
     let first = stage.next_first;
     stage.next_first = stage.first;
     stage.first = first;
-    stage.count = stage.next_count;
-    stage.next_count = 0u;
+    stage.path_count = stage.next_path_count;
+    stage.next_path_count = 0u;
     stage.bounce += 1u;
-    workgroups[0] = (stage.count + 63u) / 64u;
-    workgroups[1] = 1u;
-    workgroups[2] = 1u;
+    dispatch_over(stage.path_count);
 }

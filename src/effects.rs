@@ -26,6 +26,8 @@ pub enum Effect {
     Shadows,
     /// Reflection rays.
     Reflections,
+    /// Refraction rays.
+    Refraction,
     /// Primary rays test the image plane and see inner walls.
     Shells,
     /// Object space differs from world space by more than a translation.
@@ -34,12 +36,13 @@ pub enum Effect {
 
 impl Effect {
     /// All effects, in the order of the tables.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Ambient,
         Self::Diffuse,
         Self::Specular,
         Self::Shadows,
         Self::Reflections,
+        Self::Refraction,
         Self::Shells,
         Self::Ellipsoids,
     ];
@@ -52,13 +55,14 @@ impl Effect {
             Self::Specular => "specular",
             Self::Shadows => "shadows",
             Self::Reflections => "reflections",
+            Self::Refraction => "refraction",
             Self::Shells => "shells",
             Self::Ellipsoids => "ellipsoids",
         }
     }
 
-    fn bit(self) -> u8 {
-        1 << self as u8
+    fn bit(self) -> u16 {
+        1 << self as u16
     }
 }
 
@@ -70,7 +74,7 @@ impl fmt::Display for Effect {
 
 /// A set of effects.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub struct EffectSet(u8);
+pub struct EffectSet(u16);
 
 impl EffectSet {
     /// No effect.
@@ -200,7 +204,7 @@ pub struct Row {
 pub struct Effects {
     /// The effects that are on.
     pub set: EffectSet,
-    /// Greatest number of reflection bounces that can matter; 0 where reflections are off.
+    /// Greatest number of bounces, reflected or refracted, that can matter; 0 where there are none.
     pub depth: u32,
     /// One row for each effect.
     pub rows: Vec<Row>,
@@ -212,6 +216,8 @@ impl Effects {
         let scene = settings.view.relative(scene);
         let needs = Needs::new(&scene, settings);
         let (depth, reflections) = needs.reflections();
+        let refraction = needs.refraction();
+        let depth = if refraction.is_ok() { settings.max_depth } else { depth };
         let mut findings = vec![
             (Effect::Ambient, needs.ambient()),
             (Effect::Diffuse, needs.diffuse()),
@@ -221,6 +227,7 @@ impl Effects {
         findings
             .push((Effect::Shadows, if lit { needs.shadows() } else { Err("no surface is lit by a light".into()) }));
         findings.push((Effect::Reflections, reflections));
+        findings.push((Effect::Refraction, refraction));
         findings.push((Effect::Shells, needs.shells()));
         findings.push((Effect::Ellipsoids, needs.ellipsoids()));
         let rows: Vec<_> = findings
@@ -228,6 +235,30 @@ impl Effects {
             .map(|(effect, finding)| Row { effect, on: finding.is_ok(), reason: finding.unwrap_or_else(|why| why) })
             .collect();
         Self { set: rows.iter().filter(|row| row.on).map(|row| row.effect).collect(), depth, rows }
+    }
+
+    /// The greatest number of waiting rays that a picture may call for: every bounce doubles the rays.
+    pub const MAX_WAITING: u32 = 32;
+
+    /// How many refraction rays wait at the most until the reflected rays beside them have been followed to their ends.
+    pub fn waiting(&self, scene: &Scene) -> u32 {
+        let [reflects, refracts] = [Effect::Reflections, Effect::Refraction].map(|effect| self.set.has(effect));
+        let branches = reflects && scene.spheres.iter().any(|s| s.kr != 0.0 && s.kt != 0.0);
+        if !refracts {
+            0
+        } else if branches {
+            self.depth.max(1)
+        } else {
+            1
+        }
+    }
+
+    /// Why `scene` cannot be rendered so deep; `None` where it can.
+    pub fn too_deep(&self, scene: &Scene) -> Option<String> {
+        let waiting = self.waiting(scene);
+        (waiting > Self::MAX_WAITING).then(|| {
+            format!("a depth of {waiting} is too much where a sphere has both Kr and Kt: every bounce doubles the rays")
+        })
     }
 
     /// What `request` makes of what `scene` calls for.
@@ -248,7 +279,8 @@ impl Effects {
         effects.set = set;
         // Forcing means running the code in full, not the depth that is known to suffice.
         let forced = *request == Request::Exactly(EffectSet::ALL);
-        effects.depth = match (set.has(Effect::Reflections), effects.depth) {
+        let bounces = set.has(Effect::Reflections) || set.has(Effect::Refraction);
+        effects.depth = match (bounces, effects.depth) {
             (false, _) => 0,
             (true, 0) => settings.max_depth,
             (true, _) if forced => settings.max_depth,
@@ -272,12 +304,15 @@ struct Needs<'a> {
     settings: &'a Settings,
     /// Whether a primary ray may see the inner wall of some sphere, by index.
     first_cut: Option<usize>,
+    /// The first sphere that refracts.
+    glass: Option<usize>,
 }
 
 impl<'a> Needs<'a> {
     fn new(scene: &'a Scene, settings: &'a Settings) -> Self {
         let first_cut = scene.spheres.iter().position(|sphere| !beyond_image_plane(scene, settings, sphere));
-        Self { scene, settings, first_cut }
+        let glass = scene.spheres.iter().position(|sphere| sphere.kt != 0.0).filter(|_| settings.max_depth > 0);
+        Self { scene, settings, first_cut, glass }
     }
 
     fn name(&self, index: usize) -> String {
@@ -326,6 +361,9 @@ impl<'a> Needs<'a> {
     /// Whether some sphere can stand between a light and a point that it lights.
     fn shadows(&self) -> Finding {
         let Scene { spheres, lights, .. } = self.scene;
+        if let Some(index) = self.glass {
+            return Ok(format!("{} shows inner walls, which shadow themselves", self.name(index)));
+        }
         if let Some(index) = self.first_cut.filter(|_| spheres.len() == 1) {
             return Ok(format!("{} may be seen from inside, where it shadows itself", self.name(index)));
         }
@@ -375,6 +413,10 @@ impl<'a> Needs<'a> {
             return (0, Err("no sphere has Kr > 0".into()));
         };
         let name = self.name(first);
+        if self.glass.is_some() {
+            // Refraction rays see mirrors from anywhere, and their inner walls.
+            return (self.settings.max_depth, Ok(format!("{name} has Kr > 0")));
+        }
         let outside_only =
             beyond_image_plane(self.scene, self.settings, &spheres[first]) && self.far_from_others(first);
         match (mirrors.next(), outside_only) {
@@ -383,6 +425,14 @@ impl<'a> Needs<'a> {
             }
             (None, true) => (1, Ok(format!("{name} is the only one with Kr > 0: one bounce is all that matters"))),
             _ => (self.settings.max_depth, Ok(format!("{name} has Kr > 0"))),
+        }
+    }
+
+    fn refraction(&self) -> Finding {
+        match self.glass {
+            Some(index) => Ok(format!("{} has Kt > 0", self.name(index))),
+            None if self.settings.max_depth == 0 => Err("the greatest depth is 0".into()),
+            None => Err("no sphere has Kt > 0".into()),
         }
     }
 

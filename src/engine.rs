@@ -39,7 +39,7 @@ pub struct Rays {
     pub primary: u64,
     /// Rays towards lights.
     pub shadow: u64,
-    /// Reflected rays.
+    /// Reflected and refracted rays.
     pub reflection: u64,
 }
 
@@ -210,11 +210,6 @@ pub fn render_picture(engine: &mut Engine, scene: &Scene) -> Result<(Vec<u8>, u6
         Ok::<_, gpu::Error>(())
     })?;
     Ok((picture, not_finite))
-}
-
-/// The first sphere, if any, that calls for what no renderer of this version has: refraction.
-pub fn unsupported(scene: &Scene) -> Option<usize> {
-    scene.spheres.iter().position(|sphere| sphere.kt != 0.0)
 }
 
 fn ms(duration: Duration) -> f64 {

@@ -7,6 +7,7 @@
 use std::borrow::Cow;
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::scene::{Scene, Sphere, Window};
 use crate::settings::{Secondary, Settings};
@@ -60,11 +61,13 @@ fn reciprocal_power_of_two(x: f64) -> f64 {
 
 /// Prepares every sphere of `scene`; without `true_axes` each becomes its bounding sphere.
 pub fn ellipsoids(scene: &Scene, true_axes: bool) -> Vec<Ellipsoid> {
-    let prepare = |sphere: &Sphere| {
-        let bounding = Sphere { scale: DVec3::splat(sphere.scale.abs().max_element()), ..*sphere };
-        Ellipsoid::new(if true_axes { sphere } else { &bounding })
-    };
-    scene.spheres.iter().map(prepare).collect()
+    scene.spheres.iter().map(|sphere| ellipsoid(sphere, true_axes)).collect()
+}
+
+/// Prepares a sphere; without `true_axes` it becomes its bounding sphere.
+pub fn ellipsoid(sphere: &Sphere, true_axes: bool) -> Ellipsoid {
+    let scale = if true_axes { sphere.scale } else { DVec3::splat(sphere.scale.abs().max_element()) };
+    Ellipsoid::with_axes(sphere.center, scale)
 }
 
 /// Worlds whose greatest coordinate lies within this range keep their squares within the range of `f32` as they are.
@@ -82,11 +85,11 @@ pub fn in_range<'a>(scene: &'a Scene, settings: &Settings) -> (Cow<'a, Scene>, S
     let view = settings.view;
     let (scene, mut settings) = (view.relative(scene), Settings { view: view.at_origin(), ..*settings });
     let extent = |v: DVec3| v.abs().max_element();
-    let spheres = scene.spheres.iter().map(|s| extent(s.center).max(extent(s.scale)));
+    let spheres = scene.spheres.par_iter().map(|s| extent(s.center).max(extent(s.scale))).reduce(|| 0.0, f64::max);
     let lights = scene.lights.iter().map(|light| extent(light.position));
     let Window { near, left, right, bottom, top } = scene.window;
     let window = [near, left.abs(), right.abs(), bottom.abs(), top.abs()];
-    let greatest = spheres.chain(lights).chain(window).fold(0.0, f64::max);
+    let greatest = lights.chain(window).fold(spheres, f64::max);
     let k = range_factor(greatest);
     if k == 1.0 {
         return (scene, settings);
@@ -109,6 +112,14 @@ pub fn in_range<'a>(scene: &'a Scene, settings: &Settings) -> (Cow<'a, Scene>, S
 
 /// For each sphere the lowest index of a sphere with the bit-identical surface: rays that leave one leave them all.
 pub fn shape_indices(spheres: &[Ellipsoid]) -> Vec<u32> {
-    let mut first = std::collections::HashMap::with_capacity(spheres.len());
-    spheres.iter().enumerate().map(|(index, sphere)| *first.entry(sphere.bits()).or_insert(index as u32)).collect()
+    let mut indices: Vec<u32> = (0..spheres.len() as u32).collect();
+    let bits = |index: u32| spheres[index as usize].bits();
+    let mut order = indices.clone();
+    order.par_sort_unstable_by(|&a, &b| bits(a).cmp(&bits(b)).then(a.cmp(&b)));
+    for same in order.chunk_by(|&a, &b| bits(a) == bits(b)) {
+        for &index in same {
+            indices[index as usize] = same[0];
+        }
+    }
+    indices
 }

@@ -1,9 +1,9 @@
 //! Ray tracer for scenes of spheres and ellipsoids: a WGSL compute shader on any Vulkan device, checked against a CPU
 //! reference.
 //!
-//! The data walk: scene text → [`scene::Scene`] → [`effects::Effects`] → packed buffers → composed WGSL and constants →
-//! dispatch → rows of pixels → file. `cpu` and `gpu` never see each other; both read [`scene`], [`effects`], [`camera`]
-//! and [`geometry`].
+//! The data walk: scene text → [`scene::Scene`] → [`effects::Effects`] → lists of spheres ([`accel`]) → packed buffers →
+//! composed WGSL and constants → stages of dispatches → rows of pixels → file. `cpu` and `gpu` never see each other; both
+//! read [`scene`], [`effects`], [`camera`], [`geometry`] and [`accel`].
 
 pub mod accel;
 pub mod bench;

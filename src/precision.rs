@@ -169,8 +169,8 @@ impl Demand {
             gap: greatest,
             exponent: least,
         };
-        // Shadow and reflection rays start on any surface.
-        let secondary = effects.set.has(Effect::Shadows) || effects.set.has(Effect::Reflections);
+        // Secondary rays start on any surface.
+        let secondary = [Effect::Shadows, Effect::Reflections, Effect::Refraction].iter().any(|&e| effects.set.has(e));
         let bounds = scene.spheres.iter().map(|s| (s.center - s.scale.abs(), s.center + s.scale.abs()));
         let (low, high) = bounds.reduce(|(a, b), (c, d)| (a.min(c), b.max(d))).unwrap_or_default();
         let lights = scene.lights.iter().filter(|_| effects.set.has(Effect::Shadows)).map(|light| light.position);

@@ -1,4 +1,4 @@
-//! Which part of the picture a sphere can cover.
+//! Where on the picture a sphere can be: what none covers is background and needs no ray.
 
 use glam::DVec3;
 
@@ -21,10 +21,9 @@ pub(crate) struct Bounds {
 
 impl Bounds {
     /// Columns and rows that the part of the ellipsoid beyond the image plane can cover.
-    pub(crate) fn new(ellipsoid: &Ellipsoid, camera: &Camera) -> Option<Self> {
-        let semi_axes = ellipsoid.scale * ellipsoid.radius;
+    pub(crate) fn new(center: DVec3, semi_axes: DVec3, camera: &Camera) -> Option<Self> {
         let axes = camera.axes();
-        let [x, y, z] = axes.map(|axis| axis.dot(ellipsoid.center));
+        let [x, y, z] = axes.map(|axis| axis.dot(center));
         let [half_x, half_y, half_z] = axes.map(|axis| axis * semi_axes);
         let near = camera.near();
         let depth = half_z.length();
@@ -34,7 +33,8 @@ impl Bounds {
         let rows = pixel_range(down.map(|slope| camera.row_of(slope * near)), camera.height())?;
         let is_large = rows[1] - rows[0] > 3 * TILE && columns[1] - columns[0] > 3 * TILE;
         let whole = z + depth < -near;
-        let outline = (is_large && whole).then(|| Box::new(Outline::new(ellipsoid, axes, across)));
+        let ellipsoid = || Ellipsoid::with_axes(center, semi_axes);
+        let outline = (is_large && whole).then(|| Box::new(Outline::new(&ellipsoid(), axes, across)));
         Some(Self { columns, rows, outline })
     }
 
@@ -142,6 +142,11 @@ fn slopes([x, z]: [f64; 2], [half_x, half_z]: [DVec3; 2], depth: f64, near: f64)
     // sums of squares, so that no other products cancel.
     let a = z * z - deep;
     let discriminant = (half_z * x - half_x * z).length_squared() - area;
+    if z + depth < -near && a > 0.0 && discriminant >= 0.0 {
+        // Wholly beyond the image plane, and so are the points that the tangents touch.
+        let (middle, half) = ((mixed - x * z) / a, discriminant.sqrt() / a);
+        return Some([middle - half, middle + half]);
+    }
     if a != 0.0 && discriminant >= 0.0 {
         for sign in [-1.0, 1.0] {
             let m = (mixed - x * z + sign * discriminant.sqrt()) / a;

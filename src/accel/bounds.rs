@@ -1,8 +1,8 @@
 //! What encloses a sphere for sure: all that its intersection test, rounding included, may take for a hit.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
-use crate::geometry::Ellipsoid;
 use crate::scene::{Scene, Sphere};
 
 /// How a renderer rounds.
@@ -19,6 +19,8 @@ impl Rounding {
     pub const SINGLE: Self = Self { tests: 6e-8, lookups: 6e-8 };
     /// Error-free transforms of `f32` in the tests.
     pub const COMPENSATED: Self = Self { tests: 1e-12, lookups: 6e-8 };
+    /// Nothing is known: every list has every sphere.
+    pub const UNKNOWN: Self = Self { tests: 1e9, lookups: 6e-8 };
     /// `f64` throughout.
     pub const DOUBLE: Self = Self { tests: 1.2e-16, lookups: 1.2e-16 };
 }
@@ -46,9 +48,8 @@ impl<'a> Enclosure<'a> {
     /// Of the spheres of `scene`, or of their bounding spheres without `true_axes`.
     pub(super) fn new(scene: &'a Scene, true_axes: bool, rounding: Rounding) -> Self {
         let extent = |v: DVec3| v.abs().max_element();
-        let spheres = scene.spheres.iter().map(|s| extent(s.center) + extent(s.scale));
-        let lights = scene.lights.iter().map(|light| extent(light.position));
-        let magnitude = spheres.chain(lights).fold(0.0, f64::max);
+        let spheres = scene.spheres.par_iter().map(|s| extent(s.center) + extent(s.scale)).reduce(|| 0.0, f64::max);
+        let magnitude = scene.lights.iter().map(|light| extent(light.position)).fold(spheres, f64::max);
         Self { spheres: &scene.spheres, true_axes, error: ERROR_STEPS * rounding.tests * magnitude, magnitude }
     }
 
@@ -60,8 +61,13 @@ impl<'a> Enclosure<'a> {
     /// More than the error of a sphere's distance from a point, in single precision.
     pub(super) fn slack(&self) -> f64 {
         let ratio = |s: &Sphere| s.scale.abs().max_element() / s.scale.abs().min_element();
-        let ratio = if self.true_axes { self.spheres.iter().map(ratio).fold(1.0, f64::max) } else { 1.0 };
-        ERROR_STEPS * Rounding::SINGLE.tests * self.magnitude * ratio
+        let ratio = if self.true_axes { self.spheres.par_iter().map(ratio).reduce(|| 1.0, f64::max) } else { 1.0 };
+        self.error.max(ERROR_STEPS * Rounding::SINGLE.tests * self.magnitude) * ratio
+    }
+
+    /// The greatest semi-axis as it is.
+    pub(super) fn radius(&self, sphere: usize) -> f64 {
+        self.spheres[sphere].scale.abs().max_element()
     }
 
     /// Centre and enlarged semi-axes.
@@ -71,12 +77,6 @@ impl<'a> Enclosure<'a> {
         let axes = if self.true_axes { scale } else { DVec3::splat(scale.max_element()) };
         // The test errs alike along all axes of object space, where the ellipsoid is a sphere.
         Solid { center, semi_axes: axes * (1.0 + MARGIN + self.error / axes.min_element()) }
-    }
-
-    /// The same as an ellipsoid prepared for intersection.
-    pub(super) fn ellipsoid(&self, sphere: usize) -> Ellipsoid {
-        let Solid { center, semi_axes } = self.solid(sphere);
-        Ellipsoid::with_axes(center, semi_axes)
     }
 }
 

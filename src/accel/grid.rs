@@ -1,6 +1,7 @@
 //! A uniform grid for rays that share nothing: reflections.
 
 use glam::{DVec3, IVec3, UVec3};
+use rayon::prelude::*;
 
 use super::bounds::{Enclosure, Rounding, Solid};
 use super::lists::{Binning, Lists};
@@ -13,6 +14,8 @@ const CELL_MARGIN: f64 = 4e-3;
 const MAX_LARGE: usize = 16;
 /// A sphere this many times larger than the typical one does not belong into cells made for that.
 const LARGE: f64 = 32.0;
+/// Spheres among which the typical size is sought.
+const MAX_SAMPLE: usize = 4096;
 
 /// Cells of equal size, and the spheres that are too large for them.
 #[derive(Debug, Clone)]
@@ -39,16 +42,16 @@ struct Cells<'a> {
 
 impl Grid {
     /// Bins everything that `enclosure` has.
-    pub(super) fn new(enclosure: &Enclosure, rounding: Rounding, density: f64) -> Self {
+    pub(super) fn new(enclosure: &Enclosure, rounding: Rounding) -> Self {
         let large = large_spheres(enclosure);
         let is_small = |sphere: &usize| large.binary_search(&(*sphere as u32)).is_err();
-        let small = || (0..enclosure.len()).filter(is_small).map(|sphere| enclosure.solid(sphere));
-        let ends = small().map(|s| (s.center - s.semi_axes, s.center + s.semi_axes));
-        let (low, high) = ends.reduce(|(a, b), (c, d)| (a.min(c), b.max(d))).unwrap_or_default();
+        let small = (0..enclosure.len()).into_par_iter().filter(is_small).map(|sphere| enclosure.solid(sphere));
+        let ends = small.map(|s| (s.center - s.semi_axes, s.center + s.semi_axes));
+        let (low, high) = ends.reduce_with(|(a, b), (c, d)| (a.min(c), b.max(d))).unwrap_or_default();
         let low = DVec3::from_array(low.to_array().map(|x| f64::from((x as f32).next_down())));
         let size = (high - low).max(DVec3::splat(1e-30));
-        // So many cells that each holds 1/density of a sphere, as nearly cubes as the box allows.
-        let wanted = density * (enclosure.len() - large.len()).max(1) as f64;
+        // Cells as nearly cubes as the box allows.
+        let wanted = cells_per_sphere(enclosure.len()) * (enclosure.len() - large.len()).max(1) as f64;
         let sorted = {
             let mut edges = size.to_array();
             edges.sort_by(f64::total_cmp);
@@ -69,7 +72,7 @@ impl Grid {
             let per_unit = DVec3::from_array(per_unit.to_array().map(|x| f64::from((x as f32).next_down())));
             let margin = DVec3::splat(CELL_MARGIN) + per_unit * (8.0 * rounding.lookups * enclosure.magnitude);
             let grid = Cells { enclosure, is_large: large.clone(), low, per_unit, cells: cells.as_uvec3(), margin };
-            if cells == DVec3::ONE || grid.boxes(limit) <= limit {
+            if cells == DVec3::ONE || grid.boxes() <= limit {
                 return Self { low, per_unit, cells: grid.cells, lists: Lists::build(&grid) };
             }
             edge *= 1.5;
@@ -87,16 +90,27 @@ impl Grid {
     }
 }
 
+/// How many cells there are for each sphere: where the spheres are few, finer cells are cheap.
+fn cells_per_sphere(spheres: usize) -> f64 {
+    if spheres < 50_000 { 3.0 } else { 1.0 }
+}
+
 /// The few spheres that are far larger than the typical one.
 fn large_spheres(enclosure: &Enclosure) -> Vec<u32> {
     let count = enclosure.len();
     let size = |sphere: usize| enclosure.solid(sphere).semi_axes.max_element();
-    let mut sizes: Vec<(f64, u32)> = (0..count).map(|sphere| (size(sphere), sphere as u32)).collect();
+    let with_size = |sphere: usize| (size(sphere), sphere as u32);
     let descending = |a: &(f64, u32), b: &(f64, u32)| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1));
-    if count > MAX_LARGE {
-        sizes.select_nth_unstable_by(count / 2, descending);
-        let typical = sizes[count / 2].0;
-        sizes.retain(|&(size, _)| size > LARGE * typical);
+    let mut sizes: Vec<(f64, u32)> = if count > MAX_LARGE {
+        // The typical one of a sample.
+        let mut sample: Vec<f64> = (0..count).step_by(count.div_ceil(MAX_SAMPLE)).map(size).collect();
+        let middle = sample.len() / 2;
+        let typical = *sample.select_nth_unstable_by(middle, f64::total_cmp).1;
+        (0..count).into_par_iter().map(with_size).filter(|&(size, _)| size > LARGE * typical).collect()
+    } else {
+        (0..count).map(with_size).collect()
+    };
+    if sizes.len() > MAX_LARGE {
         sizes.sort_by(descending);
         sizes.truncate(MAX_LARGE);
     }
@@ -119,18 +133,15 @@ impl Cells<'_> {
         self.is_large.binary_search(&(sphere as u32)).is_err().then(|| self.enclosure.solid(sphere))
     }
 
-    /// How many cells the boxes around the spheres meet, counted until beyond `limit`.
-    fn boxes(&self, limit: u64) -> u64 {
-        let mut sum = 0;
-        for solid in (0..self.enclosure.len()).filter_map(|sphere| self.solid(sphere)) {
+    /// How many cells the boxes around the spheres meet.
+    fn boxes(&self) -> u64 {
+        let boxes = |sphere: usize| {
+            let Some(solid) = self.solid(sphere) else { return 0 };
             let (first, last) = self.span(&solid);
             let span = (last - first + UVec3::ONE).as_u64vec3();
-            sum += span.x * span.y * span.z;
-            if sum > limit {
-                break;
-            }
-        }
-        sum
+            span.x * span.y * span.z
+        };
+        (0..self.enclosure.len()).into_par_iter().map(boxes).sum()
     }
 }
 
@@ -143,9 +154,9 @@ impl Binning for Cells<'_> {
         (self.cells.x * self.cells.y * self.cells.z) as usize + 1
     }
 
-    fn visit(&self, rank: usize, emit: &mut impl FnMut(usize)) {
+    fn visit(&self, rank: usize, emit: &mut impl FnMut(usize, usize)) {
         let Some(solid) = self.solid(rank) else {
-            emit(self.cells() - 1);
+            emit(self.cells() - 1, self.cells() - 1);
             return;
         };
         let (first, last) = self.span(&solid);
@@ -161,10 +172,12 @@ impl Binning for Cells<'_> {
             let gap_z = gap(2, z);
             for y in first.y..=last.y {
                 let gap_yz = gap_z + gap(1, y);
-                for x in first.x..=last.x {
-                    if gap_yz + gap(0, x) <= 1.0 {
-                        emit(((z * self.cells.y + y) * self.cells.x + x) as usize);
-                    }
+                // The nearest cell of the row is in the middle, so those that are met lie side by side.
+                let is_met = |x: &u32| gap_yz + gap(0, *x) <= 1.0;
+                if let Some(left) = (first.x..=last.x).find(is_met) {
+                    let right = (left..=last.x).rfind(is_met).unwrap_or(left);
+                    let start = (z * self.cells.y + y) * self.cells.x;
+                    emit((start + left) as usize, (start + right) as usize);
                 }
             }
         }

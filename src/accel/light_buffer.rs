@@ -1,6 +1,7 @@
 //! Lists for shadow rays: all those to one light share an end, so directions from the light are binned like the picture's
 //! pixels (Haines, Greenberg, "The Light Buffer: A Shadow-Testing Accelerator", 1986).
 
+use bytemuck::{Zeroable, zeroed_vec};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -28,8 +29,21 @@ pub struct Face {
     pub per_unit: f64,
     /// Number of cells along u and v; 0 where there is no sphere.
     pub cells: [u32; 2],
-    /// Index of the first cell.
+    /// Index of the first cell among those of the light.
     pub first: u32,
+}
+
+impl Face {
+    /// The cells that ranges of u and v meet on this face, which is number `index`.
+    fn rectangle(&self, index: usize, ranges: [[f64; 2]; 2]) -> Rectangle {
+        let place = |axis: usize, end: usize, margin: f64| {
+            let cell = (ranges[axis][end] - self.low[axis]) * self.per_unit + margin;
+            cell.clamp(0.0, f64::from(self.cells[axis] - 1)) as u32
+        };
+        let [low, high] =
+            [(0, -CELL_MARGIN), (1, CELL_MARGIN)].map(|(end, margin)| [place(0, end, margin), place(1, end, margin)]);
+        Rectangle::new(index, [low[0], low[1], high[0], high[1]])
+    }
 }
 
 /// Lists for one or more lights: spheres in ascending order of their least distance from the light.
@@ -37,8 +51,8 @@ pub struct Face {
 pub struct LightBuffer {
     /// Six faces a light: +x, −x, +y, −y, +z, −z.
     pub faces: Vec<[Face; 6]>,
-    /// The cells of all faces of all lights.
-    pub lists: Lists,
+    /// The cells of all faces of each light.
+    pub lists: Vec<Lists>,
     /// What a sphere must be farther from the light than a point, beside [`REACH`] radii, so that neither it nor any that
     /// follows in a list can stand before the point.
     pub slack: f64,
@@ -47,17 +61,12 @@ pub struct LightBuffer {
 impl LightBuffer {
     /// Bins everything that `enclosure` has around each light; `entries` limits their number for each, roughly.
     pub(super) fn new(enclosure: &Enclosure, lights: &[DVec3], entries: u64, rounding: Rounding) -> Self {
-        let lists = Lists { offsets: vec![0], entries: Vec::new() };
-        let mut buffer = Self { faces: Vec::new(), lists, slack: enclosure.slack() };
-        for &light in lights {
-            let around = Around::new(enclosure, light, entries, rounding, buffer.lists.cells() as u32);
-            let lists = Lists::build(&around);
-            let base = buffer.lists.entries.len() as u32;
-            buffer.lists.offsets.extend(lists.offsets[1..].iter().map(|offset| base + offset));
-            buffer.lists.entries.extend(lists.entries);
-            buffer.faces.push(around.faces);
-        }
-        buffer
+        let arounds = lights.iter().map(|&light| {
+            let around = Around::new(enclosure, light, entries, rounding);
+            (around.faces, Lists::build(&around))
+        });
+        let (faces, lists) = arounds.unzip();
+        Self { faces, lists, slack: enclosure.slack() }
     }
 
     /// The cell of a direction from the light with this index; none where no sphere is.
@@ -72,7 +81,7 @@ impl LightBuffer {
 
     /// The spheres that may stand between the light and whatever lies in this direction from it.
     pub fn at(&self, light: usize, direction: DVec3) -> &[u32] {
-        self.cell(light, direction).map_or(&[], |cell| self.lists.of(cell))
+        self.cell(light, direction).map_or(&[], |cell| self.lists[light].of(cell))
     }
 }
 
@@ -92,16 +101,41 @@ fn face_of(direction: DVec3) -> (usize, [f64; 2]) {
 }
 
 /// The spheres around one light.
-struct Around<'a> {
-    enclosure: &'a Enclosure<'a>,
-    light: DVec3,
+struct Around {
     faces: [Face; 6],
-    /// Spheres by their least distance from the light.
-    order: Vec<u32>,
+    /// What each sphere reaches on each face that sees it, in ascending order of the spheres' least distance from the light.
+    reaches: Vec<(Key, Rectangle)>,
     cells: usize,
-    first: u32,
-    /// Error of u and v.
-    error: f64,
+}
+
+/// A sphere's least distance from the light as bits in the order of the numbers, and then its index.
+type Key = u64;
+
+fn key(distance: f32, sphere: usize) -> Key {
+    let bits = distance.to_bits();
+    let ascending = bits ^ if distance.is_sign_negative() { u32::MAX } else { 1 << 31 };
+    u64::from(ascending) << 32 | sphere as u64
+}
+
+/// Cells of a face, in one word: the face, first column and row, last column and row.
+#[derive(Debug, Clone, Copy, Zeroable)]
+struct Rectangle(u64);
+
+impl Rectangle {
+    /// Bits of a column or row, which are at most [`MAX_ACROSS`] and a few.
+    const BITS: u32 = 13;
+
+    fn new(face: usize, corners: [u32; 4]) -> Self {
+        Self(corners.iter().fold(face as u64, |bits, &corner| bits << Self::BITS | u64::from(corner)))
+    }
+
+    fn face(self) -> usize {
+        (self.0 >> (4 * Self::BITS)) as usize
+    }
+
+    fn corners(self) -> [u32; 4] {
+        [3, 2, 1, 0].map(|place| (self.0 >> (place * Self::BITS)) as u32 & ((1 << Self::BITS) - 1))
+    }
 }
 
 /// What decides how fine a face is cut.
@@ -139,78 +173,104 @@ impl Extent {
     }
 }
 
-impl<'a> Around<'a> {
-    fn new(enclosure: &'a Enclosure, light: DVec3, entries: u64, rounding: Rounding, first: u32) -> Self {
-        let count = enclosure.len();
-        let nearness = |sphere: usize| {
-            let Solid { center, semi_axes } = enclosure.solid(sphere);
-            (center - light).length() - semi_axes.max_element() * REACH
-        };
-        let mut keys: Vec<(f32, u32)> = (0..count).into_par_iter().map(|s| (nearness(s) as f32, s as u32)).collect();
-        keys.par_sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let order = keys.into_iter().map(|(_, sphere)| sphere).collect();
-        let error = 8.0 * rounding.lookups;
-        let mut around = Self { enclosure, light, faces: [Face::default(); 6], order, cells: 0, first, error };
-        around.cut(entries);
-        around
-    }
+/// Spheres that one task takes at a time: sums over them are added in the same order whatever the number of threads.
+const CHUNK: usize = 4096;
 
-    /// Chooses the cells so that all lists together have no more than about so many entries.
-    fn cut(&mut self, entries: u64) {
-        let add = |mut extents: [Extent; 6], sphere: usize| {
-            self.ranges(sphere, &mut |face, ranges| extents[face] = extents[face].with(ranges));
+impl Around {
+    /// Looks at each sphere twice: keeping its ranges until the faces are cut would take twice as much memory.
+    fn new(enclosure: &Enclosure, light: DVec3, entries: u64, rounding: Rounding) -> Self {
+        let error = 8.0 * rounding.lookups;
+        let count = enclosure.len();
+        let spheres = |chunk: usize| chunk * CHUNK..count.min((chunk + 1) * CHUNK);
+        let extents = |chunk: usize| {
+            let mut extents = [Extent::EMPTY; 6];
+            for sphere in spheres(chunk) {
+                let Solid { center, semi_axes } = enclosure.solid(sphere);
+                for_each_face(center - light, semi_axes, error, |face, ranges| {
+                    extents[face] = extents[face].with(ranges);
+                });
+            }
             extents
         };
-        let union = |a: [Extent; 6], b: [Extent; 6]| std::array::from_fn(|face| Extent::union(a[face], b[face]));
-        let empty = || [Extent::EMPTY; 6];
-        let extents = (0..self.enclosure.len()).into_par_iter().fold(empty, add).reduce(empty, union);
+        let found: Vec<[Extent; 6]> = (0..count.div_ceil(CHUNK)).into_par_iter().map(extents).collect();
+        let union = |a: [Extent; 6], b: &[Extent; 6]| std::array::from_fn(|face| Extent::union(a[face], b[face]));
+        let (faces, cells) = cut(&found.iter().fold([Extent::EMPTY; 6], union), entries, error);
 
-        let sum = |term: fn(&Extent) -> f64| extents.iter().map(term).sum::<f64>();
-        let (area, border, count) = (sum(|e| e.area), sum(|e| e.border), sum(|e| e.count));
-        let span = |e: &Extent, axis: usize| (e.high[axis] - e.low[axis]).max(0.0);
-        let surface: f64 = extents.iter().map(|e| span(e, 0) * span(e, 1)).sum();
-        // Cells of edge h: a range of length x meets x/h + 1 of them, so there are area/h² + border/h + count entries.
-        let rest = (entries as f64 - count).max(count);
-        let cells_per_unit = (-border + (border * border + 4.0 * area * rest).sqrt()) / (2.0 * area).max(1e-300);
-        let density = cells_per_unit.min((entries as f64 / surface.max(1e-300)).sqrt());
-        let mut first = self.first;
-        for (face, extent) in self.faces.iter_mut().zip(&extents) {
-            if extent.count == 0.0 {
+        // As many places for each task as it found faces.
+        let lens = found.iter().map(|extents| extents.iter().map(|extent| extent.count).sum::<f64>() as usize);
+        let mut reaches: Vec<(Key, Rectangle)> = zeroed_vec(lens.clone().sum());
+        let mut rest = reaches.as_mut_slice();
+        let parts: Vec<_> = lens.map_while(|len| rest.split_off_mut(..len)).collect();
+        parts.into_par_iter().enumerate().for_each(|(chunk, part)| {
+            let mut places = part.iter_mut();
+            for sphere in spheres(chunk) {
+                let Solid { center, semi_axes } = enclosure.solid(sphere);
+                let from_light = center - light;
+                // As the kernels calculate it: what they leave out must follow in the list.
+                let key = key((from_light.length() - enclosure.radius(sphere) * REACH) as f32, sphere);
+                for_each_face(from_light, semi_axes, error, |face, ranges| {
+                    if let Some(place) = places.next() {
+                        *place = (key, faces[face].rectangle(face, ranges));
+                    }
+                });
+            }
+        });
+        reaches.par_sort_unstable_by_key(|&(key, _)| key);
+        Self { faces, reaches, cells }
+    }
+}
+
+/// The cells, so that all lists together have no more than about so many entries, and their number.
+fn cut(extents: &[Extent; 6], entries: u64, error: f64) -> ([Face; 6], usize) {
+    let sum = |term: fn(&Extent) -> f64| extents.iter().map(term).sum::<f64>();
+    let (area, border, count) = (sum(|e| e.area), sum(|e| e.border), sum(|e| e.count));
+    let span = |e: &Extent, axis: usize| (e.high[axis] - e.low[axis]).max(0.0);
+    let surface: f64 = extents.iter().map(|e| span(e, 0) * span(e, 1)).sum();
+    // Cells of edge h: a range of length x meets x/h + 1 of them, so there are area/h² + border/h + count entries.
+    let rest = (entries as f64 - count).max(count);
+    let cells_per_unit = (-border + (border * border + 4.0 * area * rest).sqrt()) / (2.0 * area).max(1e-300);
+    let density = cells_per_unit.min((entries as f64 / surface.max(1e-300)).sqrt());
+    let mut next = 0;
+    let faces = extents.map(|extent| {
+        if extent.count == 0.0 {
+            return Face::default();
+        }
+        let longest = span(&extent, 0).max(span(&extent, 1)).max(1e-30);
+        let per_unit = density.min(MAX_ACROSS / longest);
+        // The margin of the outermost spheres, and what rounding their ends takes.
+        let margin = CELL_MARGIN / per_unit + error;
+        let low = extent.low.map(|x| f64::from((x - margin) as f32) - margin);
+        let cells = [0, 1].map(|axis| ((extent.high[axis] + margin - low[axis]) * per_unit).ceil().max(1.0) as u32);
+        let face = Face { low, per_unit, cells, first: next };
+        next += cells[0] * cells[1];
+        face
+    });
+    (faces, next as usize)
+}
+
+/// Hands each face that sees the solid to `emit`, with the ranges of u and v, wider by `error` at each end.
+fn for_each_face(from_light: DVec3, semi_axes: DVec3, error: f64, mut emit: impl FnMut(usize, [[f64; 2]; 2])) {
+    for axis in 0..3 {
+        let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
+        let depth = semi_axes[axis];
+        for (face, ahead) in [(2 * axis, from_light[axis]), (2 * axis + 1, -from_light[axis])] {
+            // Most faces are out of question at once: the solid lies behind, or its box beyond an edge.
+            let farthest = FACE_EDGE * (ahead + depth);
+            let nearest = |across: usize| from_light[across].abs() - semi_axes[across];
+            if farthest <= 0.0 || nearest(u) > farthest || nearest(v) > farthest {
                 continue;
             }
-            let longest = span(extent, 0).max(span(extent, 1)).max(1e-30);
-            let per_unit = density.min(MAX_ACROSS / longest);
-            // The margin of the outermost spheres, and what rounding their ends takes.
-            let margin = CELL_MARGIN / per_unit + self.error;
-            let low = extent.low.map(|x| f64::from((x - margin) as f32) - margin);
-            let cells = [0, 1].map(|axis| ((extent.high[axis] + margin - low[axis]) * per_unit).ceil().max(1.0) as u32);
-            *face = Face { low, per_unit, cells, first };
-            first += cells[0] * cells[1];
-        }
-        self.cells = (first - self.first) as usize;
-    }
-
-    /// Hands each face that sees the sphere to `emit`, with the ranges of u and v.
-    fn ranges(&self, sphere: usize, emit: &mut impl FnMut(usize, [[f64; 2]; 2])) {
-        let Solid { center, semi_axes } = self.enclosure.solid(sphere);
-        let from_light = center - self.light;
-        for axis in 0..3 {
-            let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-            for (face, depth) in [(2 * axis, from_light[axis]), (2 * axis + 1, -from_light[axis])] {
-                let range = |across: usize| slopes(from_light[across], depth, semi_axes[across], semi_axes[axis]);
-                if let Some(u) = range(u)
-                    && let Some(v) = range(v)
-                {
-                    emit(face, [u, v].map(|[low, high]| [low - self.error, high + self.error]));
-                }
+            let range = |across: usize| slopes(from_light[across], ahead, semi_axes[across], depth);
+            if let (Some(u), Some(v)) = (range(u), range(v)) {
+                emit(face, [u, v].map(|[low, high]| [low - error, high + error]));
             }
         }
     }
 }
 
-impl Binning for Around<'_> {
+impl Binning for Around {
     fn len(&self) -> usize {
-        self.order.len()
+        self.reaches.len()
     }
 
     fn cells(&self) -> usize {
@@ -218,24 +278,17 @@ impl Binning for Around<'_> {
     }
 
     fn sphere(&self, rank: usize) -> u32 {
-        self.order[rank]
+        self.reaches[rank].0 as u32
     }
 
-    fn visit(&self, rank: usize, emit: &mut impl FnMut(usize)) {
-        self.ranges(self.order[rank] as usize, &mut |face, ranges| {
-            let face = &self.faces[face];
-            let [columns, rows] = [0, 1].map(|axis| {
-                let place = |x: f64, margin: f64| {
-                    let cell = (x - face.low[axis]) * face.per_unit + margin;
-                    cell.clamp(0.0, f64::from(face.cells[axis] - 1)) as u32
-                };
-                place(ranges[axis][0], -CELL_MARGIN)..=place(ranges[axis][1], CELL_MARGIN)
-            });
-            for row in rows {
-                let start = face.first - self.first + row * face.cells[0];
-                columns.clone().for_each(|column| emit((start + column) as usize));
-            }
-        });
+    fn visit(&self, rank: usize, emit: &mut impl FnMut(usize, usize)) {
+        let rectangle = self.reaches[rank].1;
+        let face = &self.faces[rectangle.face()];
+        let [left, top, right, bottom] = rectangle.corners();
+        for row in top..=bottom {
+            let start = face.first + row * face.cells[0];
+            emit((start + left) as usize, (start + right) as usize);
+        }
     }
 }
 
@@ -243,14 +296,20 @@ impl Binning for Around<'_> {
 /// its depth is positive; none where it is not or the face does not see it.
 fn slopes(x: f64, depth: f64, sx: f64, sd: f64) -> Option<[f64; 2]> {
     // Wholly behind, or beyond one of the edges, where x = ± FACE_EDGE depth.
-    let reach = (sx * sx + FACE_EDGE * FACE_EDGE * sd * sd).sqrt();
-    if depth + sd <= 0.0 || x.abs() - FACE_EDGE * depth > reach {
+    let beyond = x.abs() - FACE_EDGE * depth;
+    if depth + sd <= 0.0 || (beyond > 0.0 && beyond * beyond > sx * sx + FACE_EDGE * FACE_EDGE * sd * sd) {
         return None;
     }
     let mut ends = [-FACE_EDGE, FACE_EDGE];
     // Tangents u through the light: (x − u depth)² = sx² + u² sd². Where the light is inside, there are none.
     let (a, c) = (depth * depth - sd * sd, x * x - sx * sx);
-    let discriminant = x * x * depth * depth - a * c;
+    let discriminant = x * x * sd * sd + depth * depth * sx * sx - sx * sx * sd * sd;
+    if depth > 0.0 && a > 1e-3 * depth * depth {
+        // Wholly ahead, and so far that the roots of the quadratic lose no more than some digits.
+        let (middle, half) = (x * depth / a, discriminant.max(0.0).sqrt() / a);
+        ends = [ends[0].max(middle - half), ends[1].min(middle + half)];
+        return (ends[0] <= ends[1]).then_some(ends);
+    }
     if discriminant >= 0.0 {
         let q = x * depth + discriminant.sqrt().copysign(x * depth);
         for u in [q / a, c / q] {

@@ -10,20 +10,21 @@ mod light_buffer;
 mod lists;
 mod screen;
 
-pub use bounds::Rounding;
-pub use grid::Grid;
-pub use light_buffer::{Face, LightBuffer, REACH};
-pub use lists::Lists;
-pub use screen::ScreenLists;
+use glam::DVec3;
 
 use crate::camera::Camera;
 use crate::effects::{Effect, EffectSet};
 use crate::scene::Scene;
 use bounds::Enclosure;
-use glam::DVec3;
+
+pub use bounds::Rounding;
+pub use grid::Grid;
+pub use light_buffer::{Face, LightBuffer, REACH};
+pub use lists::Lists;
+pub use screen::{Cover, ScreenLists};
 
 /// The lists of one scene.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Acceleration {
     /// For rays from the eye.
     pub screen: ScreenLists,
@@ -43,19 +44,18 @@ impl Acceleration {
         Self {
             screen: ScreenLists::new(&enclosure, camera),
             lights: LightBuffer::new(&enclosure, if lit { &lights } else { &[] }, entries, rounding),
-            grid: effects.has(Effect::Reflections).then(|| Grid::new(&enclosure, rounding, grid_density())),
+            grid: (effects.has(Effect::Reflections) || effects.has(Effect::Refraction))
+                .then(|| Grid::new(&enclosure, rounding)),
         }
     }
 }
 
-fn env(name: &str, default: f64) -> f64 {
-    std::env::var(name).ok().and_then(|x| x.parse().ok()).unwrap_or(default)
-}
+/// Entries of the lists of all lights together, roughly, unless the cells become larger than the spheres: 64 MiB.
+const MAX_LIGHT_ENTRIES: u64 = 1 << 24;
 
-fn light_entries(spheres: u64, _lights: u64) -> u64 {
-    (spheres as f64 * env("LE", 12.0)) as u64 + 256
-}
-
-fn grid_density() -> f64 {
-    env("GD", 1.0)
+/// How many entries the lists of one light may have, roughly. Finer cells mean shorter lists; with many spheres, the building
+/// of the lists and the memory that they take count for more.
+fn light_entries(spheres: u64, lights: u64) -> u64 {
+    let per_sphere = if spheres < 50_000 { 12 } else { 6 };
+    (per_sphere * spheres + 256).min(MAX_LIGHT_ENTRIES / lights.max(1))
 }

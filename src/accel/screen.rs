@@ -1,6 +1,8 @@
 //! Lists for rays from the eye: which spheres each tile of the picture may see.
 
-use super::bounds::Enclosure;
+use rayon::prelude::*;
+
+use super::bounds::{Enclosure, Solid};
 use super::lists::{Binning, Lists};
 use crate::camera::Camera;
 use crate::tiles::{Bounds, TILE};
@@ -9,7 +11,7 @@ use crate::tiles::{Bounds, TILE};
 const MAX_ENTRIES: u64 = 1 << 22;
 
 /// Lists of spheres in ascending order of index, one for each tile of pixels.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct ScreenLists {
     /// Tiles in reading order.
     pub lists: Lists,
@@ -22,7 +24,8 @@ pub struct ScreenLists {
 }
 
 struct Tiles<'a> {
-    enclosure: &'a Enclosure<'a>,
+    /// Where each sphere can be on the picture.
+    bounds: &'a [Option<Bounds>],
     camera: &'a Camera,
     shift: u32,
     across: u32,
@@ -33,11 +36,16 @@ impl ScreenLists {
     /// Projects everything that `enclosure` has.
     pub(super) fn new(enclosure: &Enclosure, camera: &Camera) -> Self {
         let limit = MAX_ENTRIES.max(8 * enclosure.len() as u64);
+        let bounds = |sphere: usize| {
+            let Solid { center, semi_axes } = enclosure.solid(sphere);
+            Bounds::new(center, semi_axes, camera)
+        };
+        let bounds: Vec<_> = (0..enclosure.len()).into_par_iter().map(bounds).collect();
         let mut shift = 0;
         loop {
             let edge = TILE << shift;
             let (across, down) = (camera.width().div_ceil(edge), camera.height().div_ceil(edge));
-            let tiles = Tiles { enclosure, camera, shift, across, down };
+            let tiles = Tiles { bounds: &bounds, camera, shift, across, down };
             if across * down == 1 || u64::from(across) * u64::from(down) + tiles.rectangles(limit) <= limit {
                 let (width, height) = (camera.width(), camera.height());
                 return Self { lists: Lists::build(&tiles), shift, across, width, height };
@@ -52,12 +60,11 @@ impl ScreenLists {
         (j / edge) as usize * self.across as usize + (i / edge) as usize
     }
 
-    /// Top-left pixels of the tiles of [`TILE`] pixels that any sphere may cover, in rows `first` to `first + count`, in
-    /// reading order; `first` is a multiple of [`TILE`].
-    pub fn covered(&self, first: u32, count: u32) -> Vec<[u32; 2]> {
-        let rows = (first..(first + count).min(self.height)).step_by(TILE as usize);
-        let places = rows.flat_map(|y| (0..self.width).step_by(TILE as usize).map(move |x| [x, y]));
-        places.filter(|&[x, y]| !self.at(x, y).is_empty()).collect()
+    /// Which tiles have spheres.
+    pub fn cover(&self) -> Cover {
+        let has_spheres = self.lists.offsets.windows(2).map(|ends| ends[0] < ends[1]).collect();
+        let Self { shift, across, width, height, .. } = *self;
+        Cover { has_spheres, shift, across, width, height }
     }
 
     /// The spheres that the pixel in column `i` and row `j` may see.
@@ -66,16 +73,35 @@ impl ScreenLists {
     }
 }
 
-impl Tiles<'_> {
-    fn bounds(&self, sphere: usize) -> Option<Bounds> {
-        Bounds::new(&self.enclosure.ellipsoid(sphere), self.camera)
-    }
+/// Where the picture may have anything but background.
+#[derive(Debug, Clone)]
+pub struct Cover {
+    /// Of tiles in reading order.
+    has_spheres: Vec<bool>,
+    shift: u32,
+    across: u32,
+    width: u32,
+    height: u32,
+}
 
+impl Cover {
+    /// Top-left pixels of the tiles of [`TILE`] pixels that any sphere may cover, in rows `first` to `first + count`, in
+    /// reading order; `first` is a multiple of [`TILE`].
+    pub fn covered(&self, first: u32, count: u32) -> Vec<[u32; 2]> {
+        let edge = TILE << self.shift;
+        let tile = |x: u32, y: u32| (y / edge) as usize * self.across as usize + (x / edge) as usize;
+        let rows = (first..(first + count).min(self.height)).step_by(TILE as usize);
+        let places = rows.flat_map(|y| (0..self.width).step_by(TILE as usize).map(move |x| [x, y]));
+        places.filter(|&[x, y]| self.has_spheres[tile(x, y)]).collect()
+    }
+}
+
+impl Tiles<'_> {
     /// How many tiles the rectangles around the spheres have, counted until beyond `limit`.
     fn rectangles(&self, limit: u64) -> u64 {
         let edge = TILE << self.shift;
         let mut sum = 0;
-        for bounds in (0..self.len()).filter_map(|sphere| self.bounds(sphere)) {
+        for bounds in self.bounds.iter().flatten() {
             let span = |[first, last]: [u32; 2]| u64::from(last / edge - first / edge + 1);
             sum += span(bounds.rows) * span(bounds.columns);
             if sum > limit {
@@ -88,21 +114,20 @@ impl Tiles<'_> {
 
 impl Binning for Tiles<'_> {
     fn len(&self) -> usize {
-        self.enclosure.len()
+        self.bounds.len()
     }
 
     fn cells(&self) -> usize {
         self.across as usize * self.down as usize
     }
 
-    fn visit(&self, rank: usize, emit: &mut impl FnMut(usize)) {
-        let Some(bounds) = self.bounds(rank) else { return };
+    fn visit(&self, rank: usize, emit: &mut impl FnMut(usize, usize)) {
+        let Some(bounds) = &self.bounds[rank] else { return };
         let edge = TILE << self.shift;
         for row in bounds.rows[0] / edge..=bounds.rows[1] / edge {
             let [left, right] = bounds.columns_in([row * edge, (row + 1) * edge], self.camera);
-            for column in left / edge..=right / edge {
-                emit(row as usize * self.across as usize + column as usize);
-            }
+            let start = row as usize * self.across as usize;
+            emit(start + (left / edge) as usize, start + (right / edge) as usize);
         }
     }
 }

@@ -70,7 +70,7 @@ struct Contents {
     extent: Option<[DVec3Json; 2]>,
     /// Least and greatest semi-axis; absent without spheres.
     semi_axes: Option<[f64; 2]>,
-    /// Spheres with Kt > 0, which cannot be rendered yet.
+    /// Spheres with Kt > 0.
     refractive_spheres: usize,
     output: Option<String>,
     effects: Effects,
@@ -115,7 +115,7 @@ impl Contents {
             outln!("  output       {output}");
         }
         if self.refractive_spheres > 0 {
-            outln!("  refraction   {} spheres with Kt > 0: cannot be rendered yet", self.refractive_spheres);
+            outln!("  glass        {} spheres with Kt > 0", self.refractive_spheres);
         }
         out!("{}{}", explanation(name, &self.effects), precision_explanation(&self.precision));
     }

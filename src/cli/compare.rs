@@ -174,7 +174,7 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Subje
     args.picture.resize(&mut loaded.scene);
     let scene = &loaded.scene;
     let settings = args.picture.settings()?;
-    let effects = args.picture.effects(scene, &settings);
+    let effects = args.picture.renderable_effects(scene, &settings)?;
     let (name, picture, not_finite, judge) = if let Some(path) = picture {
         // A picture of unknown origin is judged as that of the tier asked for, or else of plain f32.
         let judge = Judge::of(args.device.precision.0.unwrap_or(Tier::Fast));

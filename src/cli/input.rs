@@ -7,7 +7,6 @@ use std::time::{Duration, Instant};
 
 use super::failure::{Failure, SCENE};
 use super::output::err;
-use crate::engine::unsupported;
 use crate::scene::{Parsed, Scene, parse};
 
 /// A scene file that has been read, with errors or without.
@@ -19,8 +18,6 @@ pub(super) struct Input {
     pub parsed: Parsed,
     /// Reading and parsing.
     pub parse_time: Duration,
-    /// Line of the first sphere that asks for refraction.
-    refraction: Option<(usize, String)>,
     path: Option<PathBuf>,
 }
 
@@ -38,24 +35,12 @@ impl Input {
         };
         let text = text.map_err(|error| Failure::new(SCENE, format!("cannot read the scene {name}: {error}")))?;
         let parsed = parse(&name, &text);
-        let refraction = parsed.scene.as_ref().and_then(|scene| {
-            let index = unsupported(scene)?;
-            Some((line_of_sphere(&text, index), scene.sphere_names.get(index).to_owned()))
-        });
-        Ok(Self { name, parsed, parse_time: start.elapsed(), refraction, path: (!stdin).then(|| path.to_owned()) })
+        Ok(Self { name, parsed, parse_time: start.elapsed(), path: (!stdin).then(|| path.to_owned()) })
     }
 
     /// Prints errors and warnings and returns the scene, if it can be rendered.
     pub(super) fn into_renderable(self, quiet: bool) -> Result<Loaded, Failure> {
         self.print_diagnostics(quiet);
-        if let Some((line, sphere)) = &self.refraction {
-            let message = format!(
-                "{}:{line}: sphere '{sphere}' has Kt > 0: refraction cannot be rendered yet\n  \
-                 help: remove the last two numbers of the line (Kt eta), or set Kt to 0",
-                self.name
-            );
-            return Err(Failure::new(SCENE, message));
-        }
         match self.parsed.scene {
             Some(scene) => Ok(Loaded { name: self.name, scene, parse_time: self.parse_time, path: self.path }),
             None => Err(Failure::new(SCENE, "")),
@@ -98,11 +83,4 @@ impl Loaded {
         let real = |path: &Path| path.canonicalize().ok();
         self.path.as_deref().and_then(real).is_some_and(|path| Some(path) == real(target))
     }
-}
-
-/// The line (from 1) of the `SPHERE` statement number `index` (from 0) in the text of a scene without errors.
-fn line_of_sphere(text: &[u8], index: usize) -> usize {
-    let is_sphere = |line: &&[u8]| line.trim_ascii_start().starts_with(b"SPHERE");
-    let lines = text.split(|&byte| byte == b'\n').enumerate();
-    lines.filter(|(_, line)| is_sphere(line)).nth(index).map_or(0, |(line, _)| line + 1)
 }

@@ -32,7 +32,7 @@ pub(super) struct PictureOptions {
     /// Specular term
     #[arg(long, value_enum)]
     specular: Option<SpecularArg>,
-    /// Greatest number of reflection bounces
+    /// Greatest number of bounces, reflected or refracted
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(0..=i64::from(Settings::MAX_DEPTH)))]
     max_depth: u32,
     /// Samples of each pixel, on a regular grid: a square number up to 256
@@ -115,6 +115,16 @@ impl PictureOptions {
     /// The size that `--res` asks for.
     pub(super) fn resolution(&self) -> Option<(u32, u32)> {
         self.res
+    }
+
+    /// The same, or a refusal where so deep a tree of rays would never end.
+    pub(super) fn renderable_effects(&self, scene: &Scene, settings: &Settings) -> Result<Effects, Failure> {
+        let effects = self.effects(scene, settings);
+        if let Some(why) = effects.too_deep(scene) {
+            let help = format!("help: --max-depth {} is the most for this scene", Effects::MAX_WAITING);
+            return Err(Failure::new(USAGE, format!("{why}\n  {help}")));
+        }
+        Ok(effects)
     }
 
     /// Applies `--res`.

@@ -116,7 +116,7 @@ fn render_one(
     args.picture.resize(&mut loaded.scene);
     let scene = &loaded.scene;
     let (target, format) = target(args, &loaded)?;
-    let effects = args.picture.effects(scene, settings);
+    let effects = args.picture.renderable_effects(scene, settings)?;
     let selection = args.device.selection(gpu, scene, settings, &effects);
     if args.explain || args.verbose {
         err!("{}{}", explanation(&loaded.name, &effects), precision_explanation(&selection));
@@ -124,14 +124,19 @@ fn render_one(
     let backend = gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, selection.tier));
 
     let mut engine = Engine::new(backend, scene, settings, &effects)?;
+    // The renderer has what it needs: the spheres go before paths and pixels take memory.
+    let (width, height) = (scene.width, scene.height);
+    let (spheres, lights) = (scene.spheres.len(), scene.lights.len());
+    drop(loaded.scene);
+
     let wants_stats = args.stats || args.stats_json.is_some();
     if wants_stats && !args.no_ray_counts {
         engine.count_rays();
     }
-    let mut writer = PictureWriter::create(&target, format, scene.width, scene.height)?;
+    let mut writer = PictureWriter::create(&target, format, width, height)?;
     let mut write_time = Duration::ZERO;
-    let mut progress = Progress::new(if args.quiet { Style::None } else { args.progress }, &loaded.name, scene.height);
-    let not_finite = render_bands(&mut engine, (scene.width, scene.height), |band| {
+    let mut progress = Progress::new(if args.quiet { Style::None } else { args.progress }, &loaded.name, height);
+    let not_finite = render_bands(&mut engine, (width, height), |band| {
         let start = Instant::now();
         writer.write_rows(band.rgb)?;
         write_time += start.elapsed();
@@ -149,10 +154,10 @@ fn render_one(
     let stats = Stats {
         scene: loaded.name.clone(),
         output: target.to_string(),
-        width: scene.width,
-        height: scene.height,
-        spheres: scene.spheres.len(),
-        lights: scene.lights.len(),
+        width,
+        height,
+        spheres,
+        lights,
         device: device_name(gpu),
         settings: *settings,
         effects,
@@ -202,7 +207,7 @@ pub(super) fn explanation(name: &str, effects: &Effects) -> String {
         format!("  {:<12} {:<4} {}\n", row.effect, if row.on { "on" } else { "off" }, row.reason)
     };
     let rows: String = effects.rows.iter().map(row).collect();
-    format!("{name}: effects (reflection depth {})\n{rows}", effects.depth)
+    format!("{name}: effects (depth {})\n{rows}", effects.depth)
 }
 
 /// What the scene demands and which tier that takes.

@@ -81,6 +81,8 @@ fn study(args: &Args) -> Result<(), Failure> {
         let mut loaded = Loaded::read(path, false)?;
         args.picture.resize(&mut loaded.scene);
         let scene = &loaded.scene;
+        let deepest = plan.depths.iter().copied().fold(settings.max_depth, u32::max);
+        args.picture.renderable_effects(scene, &Settings { max_depth: deepest, ..settings })?;
         let effects = |settings: &Settings| args.picture.effects(scene, settings);
         let selection = args.device.selection(gpu.as_ref(), scene, &settings, &effects(&settings));
         let subject = Subject {

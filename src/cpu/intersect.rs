@@ -100,6 +100,7 @@ pub(crate) struct Range<T> {
 }
 
 /// The least root of one sphere that counts, and whether it is the greater one.
+#[inline]
 pub(crate) fn accepted_root<T: Real>(
     ray: &Ray<T>,
     shape: &Shape<T>,
@@ -121,7 +122,7 @@ pub(crate) fn accepted_root<T: Real>(
 }
 
 /// The nearest of `nearest` and the intersections with `spheres` in `range`; of equal ones the lowest index.
-fn nearest_of<T: Real>(
+pub(super) fn nearest_of<T: Real>(
     world: &World<T>,
     ray: &Ray<T>,
     own: Option<&Own<T>>,
@@ -145,10 +146,14 @@ pub(crate) fn nearest_seen<T: Real>(world: &World<T>, ray: &Ray<T>, seen: &[u32]
     nearest_of(world, ray, None, &world.primary, seen, None)
 }
 
-/// The nearest intersection of a reflection ray.
-pub(crate) fn nearest_reflected<T: Real>(world: &World<T>, ray: &Ray<T>, own: Option<&Own<T>>) -> Option<Hit<T>> {
+/// The nearest intersection of a ray that leaves a surface.
+pub(crate) fn nearest_secondary<T: Real>(
+    world: &World<T>,
+    ray: &Ray<T>,
+    own: Option<&Own<T>>,
+    range: &Range<T>,
+) -> Option<Hit<T>> {
     let grid = world.accel.grid.as_ref()?;
-    let range = &world.reflection;
     let mut nearest = nearest_of(world, ray, own, range, grid.large(), None);
     for step in grid.walk(ray.origin.to_f64(), ray.direction.to_f64()) {
         nearest = nearest_of(world, ray, own, range, grid.lists.of(step.cell), nearest);

@@ -5,11 +5,13 @@ mod intersect;
 mod margin;
 pub mod oracle;
 mod real;
+mod refract;
 mod render;
 mod scene;
 mod seen;
 mod shade;
 mod trace;
+mod trace_refraction;
 mod vec3;
 mod witness;
 

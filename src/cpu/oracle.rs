@@ -6,10 +6,14 @@
 use glam::DVec3;
 
 use super::dd::Dd;
-use super::intersect::{Ray, approach, roots};
+use super::intersect::{Hit, Own, Range, Ray, approach, nearest_of, roots};
 use super::real::Real;
-use super::scene::Shape;
+use super::refract::{Snell, refraction_ray};
+use super::scene::{Glass, Material, Shape, World};
+use super::shade::surface_at;
 use super::vec3::Vec3;
+use crate::accel::Acceleration;
+use crate::settings::Specular;
 
 /// What is known of a line and an ellipsoid.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,6 +54,91 @@ pub fn intersect<T: Real>(origin: DVec3, direction: DVec3, center: DVec3, scale:
     let inv_scale = quotient(Vec3::new(T::ONE, T::ONE, T::ONE), Vec3::from_f64(scale.abs()));
     let shape = Shape { center: Vec3::from_f64(center), inv_scale, radius: T::ONE, index: 0 };
     roots(&approach(&ray, &shape), shape.radius)
+}
+
+/// A body of glass.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Body {
+    /// Its centre.
+    pub center: DVec3,
+    /// Its semi-axes.
+    pub scale: DVec3,
+    /// Index of refraction of the inside relative to the outside.
+    pub eta: f64,
+}
+
+/// The end of a path through glass.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Passage {
+    /// Where the last ray starts.
+    pub origin: DVec3,
+    /// Its direction, as long as that of the first ray, or of unit length after a total reflection.
+    pub direction: DVec3,
+    /// What it meets: t, the body by its place, and whether from inside; `None` where it misses all.
+    pub hit: Option<(f64, usize, bool)>,
+}
+
+/// The path of the refraction ray through `bodies`, `bounces` surfaces long or until it misses all; by the reference's own code
+/// in `T`, without rounding the bodies to `f64` on the way into object space.
+pub fn refracted<T: Real>(origin: DVec3, direction: DVec3, bodies: &[Body], bounces: u32) -> Passage {
+    let world = glass_world::<T>(bodies);
+    let mut ray = Ray { origin: Vec3::from_f64(origin), direction: Vec3::from_f64(direction) };
+    let mut own: Option<Own<T>> = None;
+    let all: Vec<u32> = (0..bodies.len() as u32).collect();
+    let mut hit = nearest_of(&world, &ray, None, &world.refraction, &all, None);
+    for _ in 0..bounces {
+        let Some(found) = hit else { break };
+        let surface = surface_at(&world, &ray, &found);
+        let (next, wall) = refraction_ray(&ray, &surface, &Snell::at(&world, &surface));
+        ray = next;
+        hit = nearest_of(&world, &ray, Some(own.insert(wall)), &world.refraction, &all, None);
+    }
+    let met = |hit: Hit<T>| (hit.t.to_f64(), hit.sphere, hit.inside);
+    Passage { origin: ray.origin.to_f64(), direction: ray.direction.to_f64(), hit: hit.map(met) }
+}
+
+/// `bodies` and nothing else.
+fn glass_world<T: Real>(bodies: &[Body]) -> World<T> {
+    let ones = Vec3::new(T::ONE, T::ONE, T::ONE);
+    let radii = |body: &Body| Vec3::from_f64(body.scale.abs());
+    let shape = |(index, body): (usize, &Body)| Shape {
+        center: Vec3::from_f64(body.center),
+        inv_scale: quotient(ones, radii(body)),
+        radius: T::ONE,
+        index: index as u32,
+    };
+    let material = |body: &Body| Material {
+        scale: radii(body),
+        color: Vec3::ZERO,
+        ka: T::ZERO,
+        kd: T::ZERO,
+        ks: T::ZERO,
+        kr: T::ZERO,
+        n: T::ONE,
+    };
+    let glass = |body: &Body| {
+        let eta = T::from_f64(body.eta);
+        Glass { kt: T::ONE, eta, inv_eta: T::ONE / eta }
+    };
+    let range = Range { t_min: T::ZERO, t_max: T::FAR, greater: true };
+    World {
+        shapes: bodies.iter().enumerate().map(shape).collect(),
+        materials: bodies.iter().map(material).collect(),
+        glasses: bodies.iter().map(glass).collect(),
+        lights: Vec::new(),
+        ambient: Vec3::ZERO,
+        background: Vec3::ZERO,
+        primary: range,
+        shadow_t_min: T::ZERO,
+        reflection: range,
+        refraction: range,
+        skip_self: true,
+        shadows: false,
+        refracts: true,
+        specular: Specular::Phong,
+        max_depth: 0,
+        accel: Acceleration::default(),
+    }
 }
 
 /// a/b, componentwise.

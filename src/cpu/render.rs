@@ -9,6 +9,7 @@ use super::scene::World;
 use super::trace::trace;
 use super::vec3::Vec3;
 use super::witness::Witness;
+use crate::accel::Rounding;
 use crate::camera::Camera;
 use crate::effects::Effects;
 use crate::geometry::in_range;
@@ -26,9 +27,14 @@ pub struct Reference<T> {
 impl<T: Real> Reference<T> {
     /// Prepares `scene` with `effects`, rounding its numbers once to `T`.
     pub fn new(scene: &Scene, settings: &Settings, effects: &Effects) -> Self {
+        Self::with_rounding(scene, settings, effects, T::ROUNDING)
+    }
+
+    /// Likewise, with lists of spheres for a renderer that rounds like this, at least like `T`.
+    pub fn with_rounding(scene: &Scene, settings: &Settings, effects: &Effects, rounding: Rounding) -> Self {
         let (scene, settings) = in_range(scene, settings);
         let camera = Camera::new(&scene, &settings);
-        Self { world: World::new(&scene, &settings, effects, &camera), camera, quantize: settings.quantize }
+        Self { world: World::new(&scene, &settings, effects, &camera, rounding), camera, quantize: settings.quantize }
     }
 
     /// The ray of the sample in sample column `i` and sample row `j`.
@@ -102,7 +108,7 @@ pub struct Tally {
     pub primary: u64,
     /// Rays towards lights.
     pub shadow: u64,
-    /// Reflected rays.
+    /// Reflected and refracted rays.
     pub reflection: u64,
 }
 
@@ -125,6 +131,10 @@ impl<T: Real> Witness<T> for Tally {
     }
 
     fn reflected(&mut self, _throughput: T) {
+        self.reflection += 1;
+    }
+
+    fn resumed(&mut self) {
         self.reflection += 1;
     }
 }

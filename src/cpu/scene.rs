@@ -3,7 +3,7 @@
 use super::intersect::Range;
 use super::real::Real;
 use super::vec3::Vec3;
-use crate::accel::Acceleration;
+use crate::accel::{Acceleration, Rounding};
 use crate::camera::{Camera, NEAR_T_MIN};
 use crate::effects::{Effect, EffectSet, Effects};
 use crate::geometry::{Ellipsoid, ellipsoids, shape_indices};
@@ -43,6 +43,15 @@ pub(crate) struct Material<T> {
     pub n: T,
 }
 
+/// One sphere: what only refraction reads.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Glass<T> {
+    pub kt: T,
+    /// Index of refraction of the inside relative to the outside, and one over it.
+    pub eta: T,
+    pub inv_eta: T,
+}
+
 /// One point light.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PointLight<T> {
@@ -55,6 +64,8 @@ pub(crate) struct PointLight<T> {
 pub(crate) struct World<T> {
     pub shapes: Vec<Shape<T>>,
     pub materials: Vec<Material<T>>,
+    /// Empty where nothing refracts.
+    pub glasses: Vec<Glass<T>>,
     pub lights: Vec<PointLight<T>>,
     pub ambient: Vec3<T>,
     pub background: Vec3<T>,
@@ -64,9 +75,13 @@ pub(crate) struct World<T> {
     pub shadow_t_min: T,
     /// The roots that count along a reflection ray.
     pub reflection: Range<T>,
-    /// Whether the own sphere counts by its analytic other root only.
+    /// The roots that count along a refraction ray.
+    pub refraction: Range<T>,
+    /// Whether shadow and reflection rays meet their own sphere by its analytic other root only; refraction rays always do.
     pub skip_self: bool,
     pub shadows: bool,
+    /// Whether there are refraction rays.
+    pub refracts: bool,
     pub specular: Specular,
     pub max_depth: u32,
     /// Which spheres a ray can meet.
@@ -74,13 +89,17 @@ pub(crate) struct World<T> {
 }
 
 impl<T: Real> World<T> {
-    pub(crate) fn new(scene: &Scene, settings: &Settings, effects: &Effects, camera: &Camera) -> Self {
+    pub(crate) fn new(
+        scene: &Scene,
+        settings: &Settings,
+        effects: &Effects,
+        camera: &Camera,
+        rounding: Rounding,
+    ) -> Self {
         let on = |effect| effects.set.has(effect);
         let ellipsoids = ellipsoids(scene, on(Effect::Ellipsoids));
-        let indices = match settings.secondary {
-            Secondary::SkipSelf => shape_indices(&ellipsoids),
-            Secondary::Epsilon { .. } => Vec::new(),
-        };
+        let skip_self = settings.secondary == Secondary::SkipSelf;
+        let indices = if skip_self || on(Effect::Refraction) { shape_indices(&ellipsoids) } else { Vec::new() };
         let shape = |(i, e): (usize, &Ellipsoid)| Shape {
             center: Vec3::from_f64(e.center),
             inv_scale: Vec3::from_f64(e.inv_scale),
@@ -91,17 +110,20 @@ impl<T: Real> World<T> {
         Self {
             shapes: ellipsoids.iter().enumerate().map(shape).collect(),
             materials: scene.spheres.iter().zip(&ellipsoids).map(|(s, e)| Material::new(s, e, effects.set)).collect(),
+            glasses: scene.spheres.iter().filter(|_| on(Effect::Refraction)).map(Glass::new).collect(),
             lights: scene.lights.iter().map(PointLight::new).collect(),
             ambient: Vec3::from_f64(scene.ambient),
             background: Vec3::from_f64(scene.background),
             primary: if on(Effect::Shells) { range(NEAR_T_MIN, true) } else { range(0.0, false) },
             shadow_t_min: T::from_f64(settings.secondary.shadow_t_min()),
             reflection: range(settings.secondary.reflection_t_min(), true),
-            skip_self: settings.secondary == Secondary::SkipSelf,
+            refraction: range(0.0, true),
+            skip_self,
             shadows: on(Effect::Shadows),
+            refracts: on(Effect::Refraction),
             specular: settings.specular,
             max_depth: effects.depth,
-            accel: Acceleration::new(scene, camera, effects.set, T::ROUNDING),
+            accel: Acceleration::new(scene, camera, effects.set, rounding),
         }
     }
 }
@@ -115,9 +137,16 @@ impl<T: Real> Material<T> {
             ka: term(Effect::Ambient, sphere.ka),
             kd: term(Effect::Diffuse, sphere.kd),
             ks: term(Effect::Specular, sphere.ks),
-            kr: T::from_f64(sphere.kr),
+            kr: term(Effect::Reflections, sphere.kr),
             n: T::from_f64(sphere.n),
         }
+    }
+}
+
+impl<T: Real> Glass<T> {
+    fn new(sphere: &Sphere) -> Self {
+        let eta = T::from_f64(sphere.eta);
+        Self { kt: T::from_f64(sphere.kt), eta, inv_eta: T::ONE / eta }
     }
 }
 

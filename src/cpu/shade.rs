@@ -19,6 +19,8 @@ pub(crate) struct Surface<T> {
     pub sphere: usize,
 }
 
+#[allow(clippy::inline_always, reason = "a call costs a tenth of the picture: the hit goes through memory")]
+#[inline(always)]
 pub(crate) fn surface_at<T: Real>(world: &World<T>, ray: &Ray<T>, hit: &Hit<T>) -> Surface<T> {
     let shape = &world.shapes[hit.sphere];
     let material = &world.materials[hit.sphere];
@@ -67,6 +69,7 @@ pub(crate) fn light_terms<T: Real>(
 }
 
 /// Colour of a surface point without its reflection.
+#[inline]
 pub(crate) fn local_color<T: Real, W: Witness<T>>(world: &World<T>, surface: &Surface<T>, witness: &mut W) -> Vec3<T> {
     let material = &world.materials[surface.sphere];
     let mut color = world.ambient * material.color * material.ka;

@@ -1,14 +1,15 @@
 //! A pixel's colour: the primary ray and its chain of reflections; read it beside `shaders/trace.wgsl`.
 
-use super::intersect::{Ray, nearest_reflected, nearest_seen};
+use super::intersect::{Ray, nearest_secondary, nearest_seen};
 use super::real::Real;
 use super::scene::World;
 use super::shade::{Surface, local_color, surface_at};
+use super::trace_refraction::trace_refraction;
 use super::vec3::Vec3;
 use super::witness::Witness;
 
-/// Mirrors with Kr > 1 amplify no further, or products would overflow; whatever is lit at all is white long before.
-const MAX_THROUGHPUT: f64 = 1e30;
+/// Mirrors with Kr > 1 and glass with Kt > 1 amplify no further, or products would overflow; whatever is lit at all is white long before.
+pub(super) const MAX_THROUGHPUT: f64 = 1e30;
 
 /// The unclamped colour seen along `primary`, which can meet no other spheres than those `seen`.
 pub(crate) fn trace<T: Real, W: Witness<T>>(
@@ -17,6 +18,9 @@ pub(crate) fn trace<T: Real, W: Witness<T>>(
     seen: &[u32],
     witness: &mut W,
 ) -> Vec3<T> {
+    if world.refracts {
+        return trace_refraction(world, primary, seen, witness);
+    }
     let mut ray = primary;
     let mut hit = nearest_seen(world, &ray, seen);
     witness.nearest(world, &ray, None, &world.primary, hit.as_ref());
@@ -43,7 +47,7 @@ pub(crate) fn trace<T: Real, W: Witness<T>>(
         }
         ray = reflection_ray(&surface);
         let own = world.skip_self.then_some(&surface.own);
-        hit = nearest_reflected(world, &ray, own);
+        hit = nearest_secondary(world, &ray, own, &world.reflection);
         witness.reflected(throughput);
         witness.nearest(world, &ray, own, &world.reflection, hit.as_ref());
     }

@@ -2,6 +2,7 @@
 
 use super::intersect::{Hit, Own, Range, Ray};
 use super::real::Real;
+use super::refract::Snell;
 use super::scene::{PointLight, World};
 use super::shade::Surface;
 
@@ -27,6 +28,10 @@ pub(crate) trait Witness<T: Real> {
     fn shaded(&mut self, _world: &World<T>, _surface: &Surface<T>, _light: &PointLight<T>, _specular: T) {}
     /// A reflection ray with this weight is about to be followed.
     fn reflected(&mut self, _throughput: T) {}
+    /// A refraction ray with this weight has been put aside.
+    fn refracted(&mut self, _world: &World<T>, _surface: &Surface<T>, _snell: &Snell<T>, _throughput: T) {}
+    /// The refraction ray that was put aside last is about to be followed.
+    fn resumed(&mut self) {}
 }
 
 impl<T: Real> Witness<T> for () {}

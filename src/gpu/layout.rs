@@ -74,6 +74,7 @@ pub trait Layout {
     type Material: Pod;
     type Light: Pod;
     type Face: Pod;
+    type Glass: Pod;
     /// The scalar.
     type Real: Pod;
     /// The nearest scalar.
@@ -84,8 +85,9 @@ pub trait Layout {
     fn shape(values: &ShapeValues) -> Self::Shape;
     fn material(sphere: &scene::Sphere, scale: DVec3) -> Self::Material;
     fn light(light: &scene::Light) -> Self::Light;
-    /// `base` is where in the lists the offsets of the first light's cells are.
+    /// `base` is where in the lists the offsets of the light's cells begin.
     fn face(face: &accel::Face, base: u32) -> Self::Face;
+    fn glass(sphere: &scene::Sphere) -> Self::Glass;
 }
 
 /// Declares the structs for one scalar, with the numbers of `u32` that pad each.
@@ -213,6 +215,18 @@ macro_rules! layout {
                 }
             }
 
+            shader_struct! {
+                /// What only refraction reads of a sphere.
+                Glass {
+                    /// Transmission coefficient.
+                    kt: $real,
+                    /// Index of refraction of the inside relative to the outside.
+                    eta: $real,
+                    /// 1/`eta`.
+                    inv_eta: $real,
+                }
+            }
+
             /// Packs into these structs; every number is rounded once, to the nearest.
             #[derive(Debug, Clone, Copy)]
             pub struct Layout;
@@ -223,6 +237,7 @@ macro_rules! layout {
                 type Material = Material;
                 type Light = Light;
                 type Face = Face;
+                type Glass = Glass;
                 type Real = $real;
 
                 fn real(x: f64) -> $real {
@@ -295,6 +310,14 @@ macro_rules! layout {
                         ..Face::zeroed()
                     }
                 }
+
+                fn glass(sphere: &scene::Sphere) -> Glass {
+                    Glass {
+                        kt: Self::real(sphere.kt),
+                        eta: Self::real(sphere.eta),
+                        inv_eta: Self::real(1.0 / sphere.eta),
+                    }
+                }
             }
 
             fn vector(v: DVec3) -> [$real; 3] {
@@ -319,6 +342,7 @@ const _: () = {
     assert!(size_of::<single::Material>() == 48 && std::mem::offset_of!(single::Material, ks) == 32);
     assert!(size_of::<single::Light>() == 32 && std::mem::offset_of!(single::Light, intensity) == 16);
     assert!(size_of::<single::Face>() == 32 && size_of::<double::Face>() == 48);
+    assert!(size_of::<single::Glass>() == 12 && size_of::<double::Glass>() == 24);
     assert!(size_of::<double::Params>() == 160 && std::mem::offset_of!(double::Params, sphere_count) == 144);
     assert!(size_of::<double::Shape>() == 64 && std::mem::offset_of!(double::Shape, inv_scale) == 32);
     assert!(size_of::<double::Material>() == 96 && std::mem::offset_of!(double::Material, ks) == 64);

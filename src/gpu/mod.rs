@@ -13,11 +13,12 @@ mod render;
 mod selftest;
 mod shader;
 mod timestamps;
+mod upload;
 
 pub use device::{Choice, DeviceInfo, Gpu, list};
 pub use echo::echo_layout;
 pub use error::Error;
-pub use pipeline::{RENDER_TILES, Specialisation, TRACE_PATHS};
+pub use pipeline::{SEE_TILES, SHADE_HITS, Specialisation, WALK_PATHS};
 pub use probe::{Answer, Batch, ProbeRay, Prober, Question, RawBatch, Surface};
 pub use render::{DeviceTimes, GpuRenderer};
 pub use selftest::SelfTest;

@@ -1,5 +1,8 @@
 //! From the scene to the bytes of the buffers.
 
+use std::ops::Range;
+use std::sync::Arc;
+
 use bytemuck::Pod;
 use glam::DVec3;
 
@@ -8,46 +11,82 @@ use super::shader::Kernel;
 use crate::accel::{Acceleration, Lists};
 use crate::camera::{Camera, NEAR_T_MIN};
 use crate::effects::{Effect, Effects};
-use crate::geometry::{Ellipsoid, ellipsoids, shape_indices};
+use crate::geometry::{Ellipsoid, ellipsoid, ellipsoids, shape_indices};
 use crate::scene::{Light, Scene};
 use crate::settings::{Secondary, Settings};
 use crate::tiles::TILE;
 
-/// The contents of the buffers, and the size of one element of those that loops read.
-#[derive(Debug, Default)]
-pub(super) struct Packed {
-    pub(super) params: Vec<u8>,
+/// Packs the elements of a range.
+type Write<'a> = Box<dyn Fn(Range<usize>, &mut [u8]) + Sync + 'a>;
+
+/// What a buffer holds: elements that are packed when and where they are needed.
+pub(super) struct Contents<'a> {
+    /// Number of elements.
+    count: usize,
+    /// Bytes of an element.
+    size: usize,
+    write: Write<'a>,
+}
+
+impl<'a> Contents<'a> {
+    /// `count` elements of `element` by index.
+    fn new<T: Pod>(count: usize, element: impl Fn(usize) -> T + Sync + 'a) -> Self {
+        let write = move |range: Range<usize>, bytes: &mut [u8]| {
+            for (place, index) in bytes.chunks_exact_mut(size_of::<T>()).zip(range) {
+                place.copy_from_slice(bytemuck::bytes_of(&element(index)));
+            }
+        };
+        Self { count, size: size_of::<T>(), write: Box::new(write) }
+    }
+
+    /// Bytes of all elements.
+    pub(super) fn len(&self) -> usize {
+        self.count * self.size
+    }
+
+    /// Bytes of an element.
+    pub(super) fn element_size(&self) -> usize {
+        self.size
+    }
+
+    /// Packs the elements whose bytes are those from `start` on; `bytes` has whole elements.
+    pub(super) fn write(&self, start: usize, bytes: &mut [u8]) {
+        let first = start / self.size;
+        (self.write)(first..first + bytes.len() / self.size, bytes);
+    }
+
+    /// All elements.
+    pub(super) fn bytes(&self) -> Vec<u8> {
+        let mut bytes = vec![0; self.len()];
+        self.write(0, &mut bytes);
+        bytes
+    }
+}
+
+/// The contents of the buffers but the lists.
+pub(super) struct Packed<'a> {
+    pub(super) params: Contents<'a>,
     /// One per sphere.
-    pub(super) shapes: Vec<u8>,
+    pub(super) shapes: Contents<'a>,
     /// One per sphere.
-    pub(super) materials: Vec<u8>,
+    pub(super) materials: Contents<'a>,
+    /// One per sphere; empty where nothing refracts.
+    pub(super) glasses: Contents<'a>,
     /// One per light.
-    pub(super) lights: Vec<u8>,
+    pub(super) lights: Contents<'a>,
     /// What each sample column and then each sample row gives to its rays, on to the end of the last tile, and then what
     /// rounding took from each.
-    pub(super) window: Vec<u8>,
-    /// The lists of spheres: all offsets, then all entries.
-    pub(super) lists: Vec<u32>,
+    pub(super) window: Contents<'a>,
     /// Six faces a light with lists.
-    pub(super) faces: Vec<u8>,
+    pub(super) faces: Contents<'a>,
     /// What rounding took from spheres and lights, for the tier that carries it.
-    pub(super) low: Option<Low>,
-    pub(super) shape_size: usize,
-    pub(super) light_size: usize,
-    pub(super) face_size: usize,
+    pub(super) low: Option<[Contents<'a>; 2]>,
 }
 
-/// What rounding took from each number, in the same layout.
-#[derive(Debug, Default)]
-pub(super) struct Low {
-    pub(super) shapes: Vec<u8>,
-    pub(super) lights: Vec<u8>,
-}
-
-impl Packed {
+impl<'a> Packed<'a> {
     /// Packs `scene` for a pipeline that simulates `effects` with `kernel`.
     pub(super) fn new(
-        scene: &Scene,
+        scene: &'a Scene,
         settings: &Settings,
         effects: &Effects,
         kernel: Kernel,
@@ -61,26 +100,30 @@ impl Packed {
     }
 }
 
-fn pack<L: Layout>(
-    scene: &Scene,
+fn pack<'a, L: Layout + 'a>(
+    scene: &'a Scene,
     settings: &Settings,
     effects: &Effects,
     with_low: bool,
     accel: &Acceleration,
-) -> Packed {
-    let (lists, [lights_base, grid_offsets]) = joined_lists(accel);
+) -> Packed<'a> {
     let on = |effect| effects.set.has(effect);
     let camera = Camera::new(scene, settings);
-    let ellipsoids = ellipsoids(scene, on(Effect::Ellipsoids));
+    let true_axes = on(Effect::Ellipsoids);
     let indices = match settings.secondary {
-        Secondary::SkipSelf => shape_indices(&ellipsoids),
-        Secondary::Epsilon { .. } => (0..ellipsoids.len() as u32).collect(),
+        Secondary::Epsilon { .. } if !on(Effect::Refraction) => Vec::new(),
+        _ => shape_indices(&ellipsoids(scene, true_axes)),
     };
-    let shapes = shape_values(&ellipsoids, indices, on(Effect::Ellipsoids));
+    let indices = Arc::new(indices);
+    let shape = move |i: usize| {
+        let index = indices.get(i).copied().unwrap_or(i as u32);
+        shape_value(&ellipsoid(&scene.spheres[i], true_axes), index, true_axes)
+    };
     let [columns, rows] = [scene.width, scene.height].map(|size| size.next_multiple_of(TILE) * settings.samples);
     let window = || (0..columns).map(|i| camera.column(i)).chain((0..rows).map(|j| camera.row(j)));
     let window_low = with_low.then(|| window().map(residual::<L>)).into_iter().flatten();
-
+    let window: Vec<DVec3> = window().chain(window_low).collect();
+    let bases = list_bases(accel);
     let params = ParamValues {
         background: scene.background,
         ambient: scene.ambient,
@@ -89,46 +132,71 @@ fn pack<L: Layout>(
         reflection_t_min: settings.secondary.reflection_t_min(),
         quantize_bias: settings.quantize.bias(),
         window_rows: columns,
-        lists: list_values(accel, grid_offsets),
+        lists: list_values(accel, accel.grid.as_ref().map_or(0, |_| bases[bases.len() - 1])),
         sphere_count: scene.spheres.len() as u32,
         light_count: scene.lights.len() as u32,
         max_depth: effects.depth,
     };
-    // Without the effect the kernel leaves out the way into object space.
-    let scale = |ellipsoid: &Ellipsoid| if on(Effect::Ellipsoids) { ellipsoid.scale } else { DVec3::ONE };
-    let low = || Low {
-        shapes: bytes(shapes.iter().map(|s| L::shape(&low_shape::<L>(s)))),
-        lights: bytes(scene.lights.iter().map(|l| L::light(&low_light::<L>(l)))),
+    let material = move |i: usize| {
+        let sphere = &scene.spheres[i];
+        // Without the effect the kernel leaves out the way into object space.
+        let scale = if true_axes { ellipsoid(sphere, true_axes).scale } else { DVec3::ONE };
+        L::material(sphere, scale)
+    };
+    let faces = accel.lights.faces.iter().zip(bases.iter().skip(1));
+    let faces: Vec<_> = faces.flat_map(|(faces, &base)| faces.map(|face| (face, base))).collect();
+    let (spheres, lights) = (scene.spheres.len(), &scene.lights);
+    let low_shape_at = shape.clone();
+    let low = move || {
+        [
+            Contents::new(spheres, move |i| L::shape(&low_shape::<L>(&low_shape_at(i)))),
+            Contents::new(lights.len(), |i| L::light(&low_light::<L>(&lights[i]))),
+        ]
     };
     Packed {
-        params: bytes([L::params(&params)]),
-        shapes: bytes(shapes.iter().map(L::shape)),
-        materials: bytes(scene.spheres.iter().zip(&ellipsoids).map(|(s, e)| L::material(s, scale(e)))),
-        lights: bytes(scene.lights.iter().map(L::light)),
-        window: bytes(window().chain(window_low).map(|v| v.extend(0.0).to_array().map(L::real))),
-        lists,
-        faces: bytes(accel.lights.faces.iter().flatten().map(|face| L::face(face, lights_base))),
+        params: Contents::new(1, move |_| L::params(&params)),
+        shapes: Contents::new(spheres, move |i| L::shape(&shape(i))),
+        materials: Contents::new(spheres, material),
+        glasses: Contents::new(if on(Effect::Refraction) { spheres } else { 0 }, |i| L::glass(&scene.spheres[i])),
+        lights: Contents::new(lights.len(), |i| L::light(&lights[i])),
+        window: Contents::new(window.len(), move |i| window[i].extend(0.0).to_array().map(L::real)),
+        faces: Contents::new(faces.len(), move |i| L::face(&faces[i].0, faces[i].1)),
         low: with_low.then(low),
-        shape_size: size_of::<L::Shape>(),
-        light_size: size_of::<L::Light>(),
-        face_size: size_of::<L::Face>(),
     }
 }
 
-/// All lists in one buffer, tiles first, and where the offsets of lights and grid begin there.
-fn joined_lists(accel: &Acceleration) -> (Vec<u32>, [u32; 2]) {
-    let none = Lists { offsets: vec![0], entries: Vec::new() };
-    let grid = accel.grid.as_ref().map_or(&none, |grid| &grid.lists);
-    let all = [&accel.screen.lists, &accel.lights.lists, grid];
-    let bases = [0, all[0].offsets.len(), all[0].offsets.len() + all[1].offsets.len()];
-    let mut entries_base = bases[2] + all[2].offsets.len();
-    let mut joined = Vec::with_capacity(entries_base + all.iter().map(|lists| lists.entries.len()).sum::<usize>());
-    for lists in all {
-        joined.extend(lists.offsets.iter().map(|offset| offset + entries_base as u32));
-        entries_base += lists.entries.len();
+/// All lists in the order of the buffer: tiles, lights, grid.
+fn all_lists(accel: &Acceleration) -> impl Iterator<Item = &Lists> {
+    std::iter::once(&accel.screen.lists).chain(&accel.lights.lists).chain(accel.grid.iter().map(|grid| &grid.lists))
+}
+
+/// Where in the buffer the offsets of each begin.
+fn list_bases(accel: &Acceleration) -> Vec<u32> {
+    let next = |base: &mut u32, lists: &Lists| Some(std::mem::replace(base, *base + lists.offsets.len() as u32));
+    all_lists(accel).scan(0, next).collect()
+}
+
+/// The buffer of all lists: all offsets, then all entries. Offsets count from the beginning of the buffer.
+pub(super) fn list_contents(accel: &Acceleration) -> Contents<'_> {
+    let mut base = all_lists(accel).map(|lists| lists.offsets.len()).sum::<usize>();
+    let mut parts = Vec::new();
+    for lists in all_lists(accel) {
+        parts.push((lists.offsets.as_slice(), base as u32));
+        base += lists.entries.len();
     }
-    all.iter().for_each(|lists| joined.extend_from_slice(&lists.entries));
-    (joined, [bases[1] as u32, bases[2] as u32])
+    parts.extend(all_lists(accel).map(|lists| (lists.entries.as_slice(), 0)));
+    let write = move |range: Range<usize>, bytes: &mut [u8]| {
+        let mut places = bytes.chunks_exact_mut(4);
+        let mut start = 0;
+        for &(values, base) in &parts {
+            let here = |index: usize| index.clamp(start, start + values.len()) - start;
+            for (value, place) in values[here(range.start)..here(range.end)].iter().zip(places.by_ref()) {
+                place.copy_from_slice(&(value + base).to_ne_bytes());
+            }
+            start += values.len();
+        }
+    };
+    Contents { count: base, size: 4, write: Box::new(write) }
 }
 
 /// Where the shader finds the lists.
@@ -167,18 +235,15 @@ pub(super) fn low_light<L: Layout>(light: &Light) -> Light {
     Light { position: residual::<L>(light.position), ..*light }
 }
 
-/// What the intersection reads of each sphere; without the way into object space, what is exact there, a power of two, goes
-/// into the radius.
-pub(super) fn shape_values(ellipsoids: &[Ellipsoid], indices: Vec<u32>, object_space: bool) -> Vec<ShapeValues> {
-    let value = |(ellipsoid, index): (&Ellipsoid, u32)| {
-        let (inv_scale, radius) = if object_space {
-            (ellipsoid.inv_scale, ellipsoid.radius)
-        } else {
-            (DVec3::ONE, ellipsoid.radius * ellipsoid.scale.x)
-        };
-        ShapeValues { center: ellipsoid.center, radius, inv_scale, index }
+/// What the intersection reads of a sphere; without the way into object space, what is exact there, a power of two, goes into
+/// the radius.
+pub(super) fn shape_value(ellipsoid: &Ellipsoid, index: u32, object_space: bool) -> ShapeValues {
+    let (inv_scale, radius) = if object_space {
+        (ellipsoid.inv_scale, ellipsoid.radius)
+    } else {
+        (DVec3::ONE, ellipsoid.radius * ellipsoid.scale.x)
     };
-    ellipsoids.iter().zip(indices).map(value).collect()
+    ShapeValues { center: ellipsoid.center, radius, inv_scale, index }
 }
 
 pub(super) fn bytes<T: Pod>(values: impl IntoIterator<Item = T>) -> Vec<u8> {

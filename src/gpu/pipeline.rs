@@ -1,19 +1,20 @@
 //! From effects to compiled kernels: the only place that sets the constants of `shaders/effects.wgsl`.
 
+use std::num::NonZeroU32;
+
 use super::device::Gpu;
 use super::error::Error;
 use super::shader::{Kernel, Module, Storage};
-use crate::effects::{Effect, EffectSet};
+use crate::effects::{Effect, EffectSet, Effects};
 use crate::scene::Scene;
 use crate::settings::{Secondary, Settings, Specular};
 
 /// Up to this many spheres and lights a pipeline is compiled for their very number: the array lengths in
 /// `shaders/few.wgsl`.
 pub(super) const MAX_FEW: usize = 16;
-/// Up to this many lights lie in a uniform buffer: the array lengths in `shaders/lights_uniform.wgsl`.
-pub(super) const MAX_UNIFORM_LIGHTS: usize = 256;
-/// Up to this many lights have lists: a sixth of the array length in `shaders/lists.wgsl`.
-pub(super) const MAX_LISTED_LIGHTS: usize = 32;
+/// Up to this many lights and their faces lie in uniform buffers: the array lengths in `shaders/lights_uniform.wgsl`, a sixth
+/// of that in `shaders/faces_uniform.wgsl`.
+pub(super) const MAX_UNIFORM_LIGHTS: usize = 32;
 
 /// What a pipeline is specialised for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -22,7 +23,9 @@ pub struct Specialisation {
     pub kernel: Kernel,
     /// The effects that it simulates.
     pub effects: EffectSet,
-    /// Whether secondary rays skip their own sphere.
+    /// Where something refracts, how many rays wait at the most.
+    pub refraction: Option<NonZeroU32>,
+    /// Whether shadow and reflection rays skip their own sphere.
     pub skip_self: bool,
     /// Whether the specular term is (N·H)ⁿ.
     pub blinn: bool,
@@ -36,7 +39,7 @@ pub struct Specialisation {
 
 impl Specialisation {
     /// For `scene` with `effects` under `settings`.
-    pub fn new(scene: &Scene, settings: &Settings, effects: EffectSet, kernel: Kernel) -> Self {
+    pub fn new(scene: &Scene, settings: &Settings, effects: &Effects, kernel: Kernel) -> Self {
         let (spheres, lights) = (scene.spheres.len(), scene.lights.len());
         let storage = if spheres.max(lights) <= MAX_FEW {
             Storage::Few([spheres as u32, lights as u32])
@@ -47,7 +50,8 @@ impl Specialisation {
         };
         Self {
             kernel,
-            effects,
+            effects: effects.set,
+            refraction: NonZeroU32::new(effects.waiting(scene)),
             skip_self: settings.secondary == Secondary::SkipSelf,
             blinn: settings.specular == Specular::Blinn,
             storage,
@@ -67,11 +71,14 @@ impl Specialisation {
             ("REFLECTIONS", on(Effect::Reflections)),
             ("SHELLS", on(Effect::Shells)),
             ("ELLIPSOIDS", on(Effect::Ellipsoids)),
-            ("SKIP_SELF", f64::from(self.skip_self)),
+            ("SKIP_SELF", f64::from(self.skip_self || self.refraction.is_some())),
             ("BLINN", f64::from(self.blinn)),
             ("SAMPLES", f64::from(self.samples)),
             ("COUNT_RAYS", f64::from(self.count_rays)),
         ];
+        if self.refraction.is_some() {
+            constants.push(("SKIP_SELF_ALWAYS", f64::from(self.skip_self)));
+        }
         if let Storage::Few([spheres, lights]) = self.storage {
             constants.extend([("SPHERE_COUNT", f64::from(spheres)), ("LIGHT_COUNT", f64::from(lights))]);
         }
@@ -80,27 +87,32 @@ impl Specialisation {
 
     /// Whether samples go on as paths.
     pub(super) fn has_paths(&self) -> bool {
-        self.effects.has(Effect::Reflections)
+        self.refraction.is_none() && self.effects.has(Effect::Reflections)
     }
 
     /// The effects whose rays find their spheres in lists: primary rays always do.
     pub(super) fn listed_effects(&self) -> EffectSet {
         match self.storage {
-            Storage::Few(_) => self.effects.with(Effect::Shadows, false).with(Effect::Reflections, false),
+            Storage::Few(_) => {
+                let walks = [Effect::Shadows, Effect::Reflections, Effect::Refraction];
+                walks.into_iter().fold(self.effects, |effects, effect| effects.with(effect, false))
+            }
             _ => self.effects,
         }
     }
 
     /// The module that renders.
     pub fn module(&self) -> Module {
-        Module::render(self.kernel, self.storage, self.samples > 1)
+        Module::render(self.kernel, self.storage, self.samples > 1, self.refraction)
     }
 }
 
-/// The entry point that renders tiles.
-pub const RENDER_TILES: &str = "render_tiles";
-/// The entry point that follows paths by one bounce.
-pub const TRACE_PATHS: &str = "trace_paths";
+/// The entry point that casts the primary rays of tiles.
+pub const SEE_TILES: &str = "see_tiles";
+/// The entry point that shades hits.
+pub const SHADE_HITS: &str = "shade_hits";
+/// The entry point that casts the reflection rays of paths.
+pub const WALK_PATHS: &str = "walk_paths";
 
 /// How a binding is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -135,9 +147,11 @@ impl Stage {
 /// The kernels of a picture.
 #[derive(Debug)]
 pub(super) struct Stages {
-    pub(super) tiles: Stage,
-    /// One bounce of the paths, and what goes between two bounces; where there are reflections.
-    pub(super) bounces: Option<(Stage, Stage)>,
+    pub(super) see: Stage,
+    pub(super) begin_shading: Stage,
+    pub(super) shade: Stage,
+    /// What goes before a bounce of the paths, and the bounce; where there are reflections.
+    pub(super) bounce: Option<[Stage; 2]>,
     /// From samples to pixels, where there are several a pixel.
     pub(super) resolve: Option<Stage>,
 }
@@ -146,23 +160,35 @@ pub(super) struct Stages {
 pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stages, Error> {
     let constants = specialisation.constants();
     let module = gpu.shader_module(&specialisation.module())?;
-    let looped = |few, many| if matches!(specialisation.storage, Storage::Few(_)) { few } else { many };
+    let is_few = matches!(specialisation.storage, Storage::Few(_));
+    let looped = if is_few { Uniform } else { Read };
     let lights = if specialisation.storage == Storage::ManyLights { Read } else { Uniform };
-    let mut common = vec![(0, Uniform), (1, looped(Uniform, Read)), (2, Read), (3, lights), (7, ReadWrite)];
-    common.extend([(8, ReadWrite), (11, ReadWrite), (12, ReadWrite)]);
+    // What every stage reads and writes.
+    let mut common = vec![(0, Uniform), (1, looped), (2, Read), (7, ReadWrite), (8, ReadWrite), (12, ReadWrite)];
     if specialisation.kernel.carries_low() {
-        common.extend([(9, looped(Uniform, Read)), (10, lights)]);
+        common.push((9, looped));
     }
-    if !matches!(specialisation.storage, Storage::Few(_)) {
-        common.extend([(13, Read), (14, Uniform)]);
+    if !is_few {
+        common.push((13, Read));
     }
-    let mut tiles = common.clone();
-    tiles.extend([(4, Read), (6, Read)]);
-    let tiles = stage(gpu, &module, RENDER_TILES, &constants, &tiles)?;
-    let bounces = if specialisation.has_paths() {
-        let paths = stage(gpu, &module, TRACE_PATHS, &constants, &common)?;
-        let advance = gpu.shader_module(&Module::advance())?;
-        Some((paths, stage(gpu, &advance, "advance", &[], &[(12, ReadWrite), (16, ReadWrite)])?))
+    let primary = [(4, Read), (6, Read)];
+    // Paths to go on with, or glass.
+    let mut shading = vec![(3, lights)];
+    shading.push(if specialisation.refraction.is_some() { (5, Read) } else { (11, ReadWrite) });
+    if specialisation.kernel.carries_low() {
+        shading.push((10, lights));
+    }
+    if !is_few {
+        shading.push((14, lights));
+    }
+    let between = gpu.shader_module(&Module::between_stages())?;
+    let between = |entry_point| stage(gpu, &between, entry_point, &[], &[(12, ReadWrite), (16, ReadWrite)]);
+    let see = stage(gpu, &module, SEE_TILES, &constants, &[&common[..], &primary].concat())?;
+    let begin_shading = between("begin_shading")?;
+    let shade = stage(gpu, &module, SHADE_HITS, &constants, &[&common[..], &primary, &shading].concat())?;
+    let bounce = if specialisation.has_paths() {
+        let walk = stage(gpu, &module, WALK_PATHS, &constants, &[&common[..], &[(11, ReadWrite)]].concat())?;
+        Some([between("begin_bounce")?, walk])
     } else {
         None
     };
@@ -173,7 +199,7 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
     } else {
         None
     };
-    Ok(Stages { tiles, bounces, resolve })
+    Ok(Stages { see, begin_shading, shade, bounce, resolve })
 }
 
 fn stage(

@@ -9,7 +9,7 @@ use wgpu::util::DeviceExt;
 use super::device::Gpu;
 use super::error::Error;
 use super::layout::{Layout, ListValues, ParamValues, ShapeValues, double, single};
-use super::pack::{bytes, low_light, low_shape, shape_values};
+use super::pack::{bytes, low_light, low_shape, shape_value};
 use super::pipeline::Specialisation;
 use super::readable::Readable;
 use super::shader::{Kernel, Module, Storage};
@@ -58,8 +58,10 @@ pub struct Batch {
     pub surfaces: Vec<Surface>,
     /// The position of each ray's light; empty where none is asked for.
     pub lights: Vec<DVec3>,
-    /// Reflections before the hit that [`Question::Bounce`] asks for.
+    /// Reflections or refractions before the hit that [`Question::Bounce`] or [`Question::Refract`] asks for.
     pub bounces: u32,
+    /// Index of refraction of all surfaces, for [`Question::Refract`].
+    pub eta: f64,
 }
 
 impl Batch {
@@ -116,6 +118,8 @@ pub enum Question {
     Lit,
     /// The hit after so many reflections as the batch says.
     Bounce,
+    /// The hit after so many refractions as the batch says.
+    Refract,
     /// cosⁿ; the origin's x is 1 − cos, its y is n.
     Power,
     /// The residuals of the error-free sum and product of the origin's x and y.
@@ -129,6 +133,7 @@ impl Question {
             Self::Blocked => "probe_blocked",
             Self::Lit => "probe_lit",
             Self::Bounce => "probe_bounce",
+            Self::Refract => "probe_refract",
             Self::Power => "probe_power",
             Self::Transforms => "probe_transforms",
         }
@@ -140,6 +145,7 @@ impl Question {
             Self::Nearest | Self::Blocked => (&[0, 1, 13, 15, 16, 17], &[9, 14]),
             Self::Lit => (&[0, 1, 2, 3, 13, 15, 16, 17], &[9, 10, 14]),
             Self::Bounce => (&[0, 1, 2, 13, 15, 16, 17], &[9, 14]),
+            Self::Refract => (&[0, 1, 2, 5, 13, 15, 16, 17], &[9, 14]),
             Self::Power => (&[13, 16, 17], &[]),
             Self::Transforms => (&[0, 13, 16, 17], &[]),
         };
@@ -165,6 +171,7 @@ struct Inputs {
     shapes: Vec<u8>,
     shapes_low: Vec<u8>,
     materials: Vec<u8>,
+    glasses: Vec<u8>,
     lights: Vec<u8>,
     lights_low: Vec<u8>,
     reals: Vec<u8>,
@@ -218,11 +225,11 @@ impl<'a> Prober<'a> {
             let surfaces = &batch.surfaces[first as usize..end as usize];
             let lights = batch.lights.iter().skip(chunk * MAX_RAYS).take(rays.len());
             let lights: Vec<_> = lights.map(|&position| Light { position, intensity: DVec3::ONE }).collect();
-            let bounces = (question == Question::Bounce).then_some(batch.bounces);
+            let bounces = matches!(question, Question::Bounce | Question::Refract).then_some(batch.bounces);
             let inputs = if self.kernel.is_double() {
-                pack::<double::Layout>(rays, surfaces, &lights, first, bounces)
+                pack::<double::Layout>(rays, surfaces, &lights, first, bounces, batch.eta)
             } else {
-                pack::<single::Layout>(rays, surfaces, &lights, first, bounces)
+                pack::<single::Layout>(rays, surfaces, &lights, first, bounces, batch.eta)
             };
             self.dispatch(question, &inputs, rays.len(), first, &mut answers)?;
         }
@@ -252,6 +259,7 @@ impl<'a> Prober<'a> {
             kernel: self.kernel,
             effects: EffectSet::ALL,
             skip_self: true,
+            refraction: None,
             blinn: false,
             storage: Storage::Ranges,
             count_rays: false,
@@ -297,13 +305,14 @@ impl<'a> Prober<'a> {
                 (binding, gpu.device.create_buffer_init(&descriptor))
             };
             let storage = wgpu::BufferUsages::STORAGE;
-            let all: [(u32, &[u8], wgpu::BufferUsages); 9] = [
+            let all: [(u32, &[u8], wgpu::BufferUsages); 10] = [
                 (0, &params, wgpu::BufferUsages::UNIFORM),
                 (1, &inputs.shapes, storage),
                 (2, &inputs.materials, storage),
                 (3, &inputs.lights, storage),
                 (9, &inputs.shapes_low, storage),
                 (10, &inputs.lights_low, storage),
+                (5, &inputs.glasses, storage),
                 (13, &inputs.reals, storage),
                 (14, &inputs.reals_low, storage),
                 (15, bytemuck::cast_slice(&inputs.words), storage),
@@ -382,6 +391,7 @@ fn pack<L: Layout>(
     lights: &[Light],
     first: u32,
     bounces: Option<u32>,
+    eta: f64,
 ) -> Inputs {
     let sphere = |s: &Surface| Sphere {
         center: s.center,
@@ -392,12 +402,13 @@ fn pack<L: Layout>(
         ks: 0.0,
         kr: 0.0,
         n: 1.0,
-        kt: 0.0,
-        eta: 1.0,
+        kt: 1.0,
+        eta,
     };
     let spheres: Vec<_> = surfaces.iter().map(sphere).collect();
     let ellipsoids: Vec<_> = spheres.iter().map(Ellipsoid::new).collect();
-    let shapes = shape_values(&ellipsoids, shape_indices(&ellipsoids), true);
+    let indices = shape_indices(&ellipsoids);
+    let shapes: Vec<_> = ellipsoids.iter().zip(indices).map(|(e, index)| shape_value(e, index, true)).collect();
     let numbers = |ray: &ProbeRay| {
         let (o, d) = (ray.origin, ray.direction);
         [o.x, o.y, o.z, d.x, d.y, d.z]
@@ -416,6 +427,7 @@ fn pack<L: Layout>(
         shapes: bytes(shapes.iter().map(L::shape)),
         shapes_low: bytes(shapes.iter().map(|s| L::shape(&low_shape::<L>(s)))),
         materials: bytes(spheres.iter().zip(&ellipsoids).map(|(s, e)| L::material(s, e.scale))),
+        glasses: bytes(spheres.iter().map(L::glass)),
         lights: bytes(lights.iter().map(L::light)),
         lights_low: bytes(lights.iter().map(|light| L::light(&low_light::<L>(light)))),
         reals: reals::<L>(rays.iter().map(numbers), rays.len()),
@@ -433,6 +445,7 @@ fn pack_raw<L: Layout>(rays: &[[[f64; 6]; 2]], shapes: &[[ShapeValues; 2]]) -> I
         shapes: part(0),
         shapes_low: part(1),
         materials: Vec::new(),
+        glasses: Vec::new(),
         lights: Vec::new(),
         lights_low: Vec::new(),
         reals: real(0),

@@ -7,12 +7,13 @@ use rayon::prelude::*;
 
 use super::device::Gpu;
 use super::error::Error;
-use super::pack::Packed;
-use super::pipeline::{MAX_FEW, MAX_LISTED_LIGHTS, MAX_UNIFORM_LIGHTS, Specialisation, Stages};
+use super::pack::{Contents, Packed, list_contents};
+use super::pipeline::{MAX_FEW, MAX_UNIFORM_LIGHTS, Specialisation, Stage, Stages};
 use super::readable::Readable;
-use super::shader::Storage;
+use super::shader::{Kernel, Storage};
 use super::timestamps::Timestamps;
-use crate::accel::Acceleration;
+use super::upload::upload;
+use crate::accel::{Acceleration, Cover, Rounding};
 use crate::camera::Camera;
 use crate::effects::{Effect, Effects};
 use crate::geometry::in_range;
@@ -56,7 +57,7 @@ pub struct DeviceTimes {
 #[derive(Debug)]
 pub struct GpuRenderer<'a> {
     gpu: &'a Gpu,
-    accel: Acceleration,
+    cover: Cover,
     width: u32,
     /// Samples of a pixel.
     samples: u64,
@@ -76,7 +77,8 @@ pub struct GpuRenderer<'a> {
 /// Everything that is needed to build the kernels once a tile asks for them.
 #[derive(Debug)]
 struct Inputs {
-    packed: Packed,
+    /// By binding.
+    buffers: Vec<(u32, wgpu::Buffer)>,
     specialisation: Specialisation,
 }
 
@@ -84,9 +86,11 @@ struct Inputs {
 #[derive(Debug)]
 struct Work {
     stages: Arc<Stages>,
-    tiles_group: wgpu::BindGroup,
-    /// For one bounce, and for what goes between two.
-    bounce_groups: Option<[wgpu::BindGroup; 2]>,
+    see_group: wgpu::BindGroup,
+    /// For what goes between two stages.
+    between_group: wgpu::BindGroup,
+    shade_group: wgpu::BindGroup,
+    walk_group: Option<wgpu::BindGroup>,
     resolve_group: Option<wgpu::BindGroup>,
     tiles: wgpu::Buffer,
     stage: wgpu::Buffer,
@@ -98,6 +102,9 @@ struct Work {
     capacity: u32,
 }
 
+/// Bytes before the hits in the shader's `Stage`.
+const STAGE_HEAD: u64 = 32;
+
 /// Invocations of a workgroup of the kernels that are not over tiles.
 const GROUP: u64 = 64;
 
@@ -105,29 +112,50 @@ impl<'a> GpuRenderer<'a> {
     /// Prepares `scene` for `gpu`; the kernels are compiled when the first tile needs them.
     pub fn new(gpu: &'a Gpu, scene: &Scene, settings: &Settings, effects: &Effects, tier: Tier) -> Result<Self, Error> {
         let kernel = gpu.kernel(tier)?;
+        Self::with_rounding(gpu, scene, settings, effects, kernel, kernel.rounding())
+    }
+
+    /// Likewise with a kernel of one's choice, and lists of spheres for one that rounds like this.
+    pub fn with_rounding(
+        gpu: &'a Gpu,
+        scene: &Scene,
+        settings: &Settings,
+        effects: &Effects,
+        kernel: Kernel,
+        rounding: Rounding,
+    ) -> Result<Self, Error> {
         let (scene, settings) = in_range(scene, settings);
         let (scene, settings) = (scene.as_ref(), &settings);
-        let specialisation = Specialisation::new(scene, settings, effects.set, kernel);
+        let specialisation = Specialisation::new(scene, settings, effects, kernel);
         let camera = Camera::new(scene, settings);
-        let accel = Acceleration::new(scene, &camera, specialisation.listed_effects(), kernel.rounding());
+        let accel = Acceleration::new(scene, &camera, specialisation.listed_effects(), rounding);
         let packed = Packed::new(scene, settings, effects, kernel, &accel);
-        check_fits(gpu, &packed)?;
+        let lists = list_contents(&accel);
+        check_fits(gpu, &packed, &lists)?;
+        let cover = accel.screen.cover();
+        // The lists on the host go before the spheres take memory on the device.
+        let list_buffer = upload(gpu, &lists, wgpu::BufferUsages::STORAGE, lists.len())?;
+        drop(lists);
+        drop(accel);
+        let buffers = scene_buffers(gpu, &packed, list_buffer, &specialisation)?;
         let samples = u64::from(settings.samples * settings.samples);
         let tests_per_pixel = samples
             * (scene.spheres.len().min(64) as u64 + 1)
             * (1 + scene.lights.len() as u64 * u64::from(effects.set.has(Effect::Shadows)))
             * (1 + u64::from(effects.depth));
-        let first = FIRST_DISPATCH_TESTS / (tests_per_pixel * TILE_PIXELS as u64);
+        // A tree of rays doubles with each bounce where rays can wait.
+        let tests_per_pixel = tests_per_pixel.saturating_mul(1 << effects.waiting(scene).min(32));
+        let first = FIRST_DISPATCH_TESTS / tests_per_pixel.saturating_mul(TILE_PIXELS as u64);
         Ok(Self {
             gpu,
-            accel,
+            cover,
             width: scene.width,
             samples,
             picture_tiles: u64::from(scene.width.div_ceil(TILE)) * u64::from(scene.height.div_ceil(TILE)),
             background: settings.quantize.levels(scene.background),
             max_depth: effects.depth,
             work: None,
-            inputs: Inputs { packed, specialisation },
+            inputs: Inputs { buffers, specialisation },
             tiles_per_dispatch: first.clamp(1, u64::from(MAX_DISPATCH_TILES)) as u32,
             times: DeviceTimes::default(),
             timestamps: None,
@@ -165,7 +193,7 @@ impl<'a> GpuRenderer<'a> {
         let background = self.background;
         rgb.par_chunks_mut(row_bytes).for_each(|row| row.as_chunks_mut::<3>().0.fill(background));
 
-        let tiles = self.accel.screen.covered(first, count);
+        let tiles = self.cover.covered(first, count);
         let mut not_finite = 0;
         let mut rest = tiles.as_slice();
         while !rest.is_empty() {
@@ -188,10 +216,10 @@ impl<'a> GpuRenderer<'a> {
     fn build(&mut self) -> Result<Work, Error> {
         let start = Instant::now();
         let gpu = self.gpu;
-        let Inputs { packed, specialisation } = &self.inputs;
+        let Inputs { buffers, specialisation } = &self.inputs;
         let (stages, used_before) = gpu.stages(specialisation)?;
         let capacity = self.capacity();
-        let work = gpu.checked("reserving buffers", || Work::new(gpu, stages, packed, capacity, specialisation))?;
+        let work = gpu.checked("reserving buffers", || Work::new(gpu, stages, buffers, capacity, specialisation))?;
         if !used_before {
             self.submit(&work, &[[0, 0]])?;
         }
@@ -231,32 +259,36 @@ impl<'a> GpuRenderer<'a> {
         self.gpu.queue.write_buffer(&work.tiles, 0, bytemuck::cast_slice(tiles));
         // The first stage's paths go into the first half.
         let half = work.capacity * TILE_PIXELS as u32 * self.samples as u32;
-        self.gpu.queue.write_buffer(&work.stage, 0, bytemuck::cast_slice(&[half, 0, 0, 0, 0]));
+        self.gpu.queue.write_buffer(&work.stage, 0, bytemuck::cast_slice(&[half, 0, 0, 0, 0, 0, 0]));
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                 label: None,
                 timestamp_writes: self.timestamps.as_ref().map(Timestamps::writes),
             });
-            pass.set_pipeline(&work.stages.tiles.pipeline);
-            pass.set_bind_group(0, &work.tiles_group, &[]);
-            pass.dispatch_workgroups(tiles.len() as u32, 1, 1);
-            if let (Some((paths, advance)), Some([paths_group, advance_group])) =
-                (&work.stages.bounces, &work.bounce_groups)
-            {
+            let mut run = |stage: &Stage, group: &wgpu::BindGroup, workgroups: Option<u32>| {
+                pass.set_pipeline(&stage.pipeline);
+                pass.set_bind_group(0, group, &[]);
+                match workgroups {
+                    Some(count) => pass.dispatch_workgroups(count, 1, 1),
+                    None => pass.dispatch_workgroups_indirect(&work.workgroups, 0),
+                }
+            };
+            let tiles = Some(tiles.len() as u32);
+            let stages = &work.stages;
+            run(&stages.see, &work.see_group, tiles);
+            run(&stages.begin_shading, &work.between_group, Some(1));
+            run(&stages.shade, &work.shade_group, None);
+            if let (Some([begin_bounce, walk]), Some(walk_group)) = (&stages.bounce, &work.walk_group) {
                 for _ in 0..self.max_depth {
-                    pass.set_pipeline(&advance.pipeline);
-                    pass.set_bind_group(0, advance_group, &[]);
-                    pass.dispatch_workgroups(1, 1, 1);
-                    pass.set_pipeline(&paths.pipeline);
-                    pass.set_bind_group(0, paths_group, &[]);
-                    pass.dispatch_workgroups_indirect(&work.workgroups, 0);
+                    run(begin_bounce, &work.between_group, Some(1));
+                    run(walk, walk_group, None);
+                    run(&stages.begin_shading, &work.between_group, Some(1));
+                    run(&stages.shade, &work.shade_group, None);
                 }
             }
-            if let (Some(resolve), Some(group)) = (&work.stages.resolve, &work.resolve_group) {
-                pass.set_pipeline(&resolve.pipeline);
-                pass.set_bind_group(0, group, &[]);
-                pass.dispatch_workgroups(tiles.len() as u32, 1, 1);
+            if let (Some(resolve), Some(group)) = (&stages.resolve, &work.resolve_group) {
+                run(resolve, group, tiles);
             }
         }
         if let Some(timestamps) = &self.timestamps {
@@ -297,39 +329,18 @@ impl<'a> GpuRenderer<'a> {
 }
 
 impl Work {
-    fn new(gpu: &Gpu, stages: Arc<Stages>, packed: &Packed, capacity: u32, specialisation: &Specialisation) -> Self {
+    fn new(
+        gpu: &Gpu,
+        stages: Arc<Stages>,
+        buffers: &[(u32, wgpu::Buffer)],
+        capacity: u32,
+        specialisation: &Specialisation,
+    ) -> Self {
         let device = &gpu.device;
-        let filled = |contents: &[u8], usage| {
-            // A binding of size 0 is not allowed; the kernel never reads past the counts.
-            let contents = if contents.is_empty() { &[0; 64] } else { contents };
-            let usage = usage | wgpu::BufferUsages::COPY_DST;
-            let size = contents.len() as u64;
-            let buffer =
-                device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false });
-            // A buffer that is mapped from the start panics where the device is lost.
-            gpu.queue.write_buffer(&buffer, 0, contents);
-            buffer
-        };
         let empty = |size, usage| {
             device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
         };
         let storage = wgpu::BufferUsages::STORAGE;
-        let uniform = wgpu::BufferUsages::UNIFORM;
-        // Uniform buffers have a fixed number of elements.
-        let fixed = |contents: &[u8], len: usize, element_size: usize| {
-            let mut padded = vec![0; len * element_size];
-            padded[..contents.len()].copy_from_slice(contents);
-            filled(&padded, uniform)
-        };
-        let shapes = |contents: &[u8]| match specialisation.storage {
-            Storage::Few(_) => fixed(contents, MAX_FEW, packed.shape_size),
-            _ => filled(contents, storage),
-        };
-        let lights = |contents: &[u8]| match specialisation.storage {
-            Storage::Few(_) => fixed(contents, MAX_FEW, packed.light_size),
-            Storage::Many => fixed(contents, MAX_UNIFORM_LIGHTS, packed.light_size),
-            _ => filled(contents, storage),
-        };
         let pixel_count = u64::from(capacity) * TILE_PIXELS as u64;
         let slots = pixel_count * u64::from(specialisation.samples * specialisation.samples);
         let pixels = Readable::new(gpu, pixel_count);
@@ -337,35 +348,26 @@ impl Work {
         let path_size = specialisation.kernel.path_size();
         let paths = if specialisation.has_paths() { 2 * slots * path_size } else { path_size };
         let color_size = if specialisation.kernel.is_double() { 32 } else { 16 };
-        let mut buffers = vec![
-            (0, filled(&packed.params, uniform)),
-            (1, shapes(&packed.shapes)),
-            (2, filled(&packed.materials, storage)),
-            (3, lights(&packed.lights)),
-            (4, filled(&packed.window, storage)),
-            (11, empty(paths, storage)),
-            (13, filled(bytemuck::cast_slice(&packed.lists), storage)),
-            (14, fixed(&packed.faces, 6 * MAX_LISTED_LIGHTS, packed.face_size)),
-        ];
-        if let Some(low) = &packed.low {
-            buffers.extend([(9, shapes(&low.shapes)), (10, lights(&low.lights))]);
-        }
+        let paths = empty(paths, storage);
         let tiles = empty(u64::from(capacity) * 8, storage | wgpu::BufferUsages::COPY_DST);
-        let stage = empty(20, storage | wgpu::BufferUsages::COPY_DST);
+        let stage = empty(STAGE_HEAD + 8 * slots, storage | wgpu::BufferUsages::COPY_DST);
         let workgroups = empty(12, storage | wgpu::BufferUsages::INDIRECT);
         let colors = stages.resolve.as_ref().map(|_| empty(slots * color_size, storage));
         let results = colors.as_ref().unwrap_or(&pixels.buffer);
         let mut all: Vec<_> = buffers.iter().map(|(binding, buffer)| (*binding, buffer)).collect();
         all.extend([(6, &tiles), (7, results), (8, &ray_counts.buffer), (12, &stage), (15, &pixels.buffer)]);
-        all.push((16, &workgroups));
-        let tiles_group = stages.tiles.bind(gpu, &all);
-        let bounce_groups =
-            stages.bounces.as_ref().map(|(paths, advance)| [paths.bind(gpu, &all), advance.bind(gpu, &all)]);
+        all.extend([(11, &paths), (16, &workgroups)]);
+        let see_group = stages.see.bind(gpu, &all);
+        let between_group = stages.begin_shading.bind(gpu, &all);
+        let shade_group = stages.shade.bind(gpu, &all);
+        let walk_group = stages.bounce.as_ref().map(|[_, walk]| walk.bind(gpu, &all));
         let resolve_group = stages.resolve.as_ref().map(|resolve| resolve.bind(gpu, &all));
         Self {
             stages,
-            tiles_group,
-            bounce_groups,
+            see_group,
+            between_group,
+            shade_group,
+            walk_group,
             resolve_group,
             tiles,
             stage,
@@ -377,13 +379,57 @@ impl Work {
     }
 }
 
+/// The buffers of the scene, by binding.
+fn scene_buffers(
+    gpu: &Gpu,
+    packed: &Packed,
+    lists: wgpu::Buffer,
+    specialisation: &Specialisation,
+) -> Result<Vec<(u32, wgpu::Buffer)>, Error> {
+    let (storage, uniform) = (wgpu::BufferUsages::STORAGE, wgpu::BufferUsages::UNIFORM);
+    // A binding of size 0 is not allowed; the kernel never reads past the counts.
+    let filled = |contents: &Contents, usage| upload(gpu, contents, usage, contents.len().max(64));
+    // Uniform buffers have a fixed number of elements.
+    let fixed = |contents: &Contents, count: usize| upload(gpu, contents, uniform, count * contents.element_size());
+    let shapes = |contents: &Contents| match specialisation.storage {
+        Storage::Few(_) => fixed(contents, MAX_FEW),
+        _ => filled(contents, storage),
+    };
+    let lights = |contents: &Contents| match specialisation.storage {
+        Storage::Few(_) => fixed(contents, MAX_FEW),
+        Storage::Many => fixed(contents, MAX_UNIFORM_LIGHTS),
+        _ => filled(contents, storage),
+    };
+    let faces = |contents: &Contents| match specialisation.storage {
+        Storage::ManyLights => filled(contents, storage),
+        _ => fixed(contents, 6 * MAX_UNIFORM_LIGHTS),
+    };
+    let mut buffers = vec![
+        (0, filled(&packed.params, uniform)?),
+        (1, shapes(&packed.shapes)?),
+        (2, filled(&packed.materials, storage)?),
+        (3, lights(&packed.lights)?),
+        (4, filled(&packed.window, storage)?),
+        (13, lists),
+        (14, faces(&packed.faces)?),
+    ];
+    if specialisation.refraction.is_some() {
+        buffers.push((5, filled(&packed.glasses, storage)?));
+    }
+    if let Some([low_shapes, low_lights]) = &packed.low {
+        buffers.extend([(9, shapes(low_shapes)?), (10, lights(low_lights)?)]);
+    }
+    Ok(buffers)
+}
+
 /// Refuses a scene whose buffers are larger than the device's bindings.
-fn check_fits(gpu: &Gpu, packed: &Packed) -> Result<(), Error> {
+fn check_fits(gpu: &Gpu, packed: &Packed, lists: &Contents) -> Result<(), Error> {
     let sizes = [
         ("spheres", packed.materials.len().max(packed.shapes.len())),
         ("lights", packed.lights.len()),
         ("columns and rows", packed.window.len()),
-        ("lists", packed.lists.len() * 4),
+        ("faces around the lights", packed.faces.len()),
+        ("lists", lists.len()),
     ];
     let limit = gpu.info.max_storage_binding.min(gpu.info.max_buffer);
     match sizes.iter().find(|(_, size)| *size as u64 > limit) {

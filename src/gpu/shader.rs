@@ -1,22 +1,24 @@
 //! The shader text: plain WGSL files, joined, with a map from the joined lines back to the files.
 
+use std::borrow::Cow;
 use std::fmt::Write as _;
+use std::num::NonZeroU32;
 
 use crate::accel::Rounding;
 use crate::precision::Tier;
 
-/// One file of `shaders/`.
-#[derive(Debug, Clone, Copy)]
+/// One file of `shaders/`, or a line from the host.
+#[derive(Debug, Clone)]
 struct Part {
     /// Name below `shaders/`.
     pub name: &'static str,
     /// Its text.
-    pub text: &'static str,
+    pub text: Cow<'static, str>,
 }
 
 macro_rules! part {
     ($name:literal) => {
-        Part { name: $name, text: include_str!(concat!("../../shaders/", $name)) }
+        Part { name: $name, text: Cow::Borrowed(include_str!(concat!("../../shaders/", $name))) }
     };
 }
 
@@ -49,7 +51,7 @@ impl Kernel {
         matches!(self, Self::Tier(Tier::Robust) | Self::Pairs | Self::NoBarrier)
     }
 
-    /// Bytes of a `Path` of `shaders/main.wgsl`; a test holds them together.
+    /// Bytes of a `Path` of `shaders/paths.wgsl`; a test holds them together.
     pub fn path_size(self) -> u64 {
         match (self.is_double(), self.carries_low()) {
             (true, _) => 128,
@@ -126,11 +128,18 @@ fn intersection_parts(kernel: Kernel, storage: Storage) -> Vec<Part> {
         Kernel::Schoolbook => vec![real, plain_ray, part!("kernel_schoolbook.wgsl")],
     });
     parts.push(part!("intersect.wgsl"));
-    parts.push(match storage {
-        Storage::Few(_) | Storage::Ranges => part!("every.wgsl"),
-        Storage::Many | Storage::ManyLights => part!("lists.wgsl"),
+    parts.extend(match storage {
+        Storage::Few(_) | Storage::Ranges => vec![part!("every.wgsl")],
+        Storage::Many => vec![part!("lists.wgsl"), part!("faces_uniform.wgsl")],
+        Storage::ManyLights => vec![part!("lists.wgsl"), part!("faces_storage.wgsl")],
     });
     parts
+}
+
+/// The parts that refract rays, in order.
+fn refract_parts(kernel: Kernel) -> [Part; 2] {
+    let bent = if kernel.carries_low() { part!("refract_robust.wgsl") } else { part!("refract_plain.wgsl") };
+    [bent, part!("refract.wgsl")]
 }
 
 /// A composed module.
@@ -142,17 +151,26 @@ pub struct Module {
 }
 
 impl Module {
-    /// The module that renders with `kernel`, one sample a pixel or several.
-    pub fn render(kernel: Kernel, storage: Storage, samples: bool) -> Self {
+    /// The module that renders with `kernel`, one sample a pixel or several; where something refracts, with room for so many
+    /// rays that wait.
+    pub fn render(kernel: Kernel, storage: Storage, samples: bool, refraction: Option<NonZeroU32>) -> Self {
         let mut parts = intersection_parts(kernel, storage);
         parts.extend([part!("film.wgsl"), part!("quantize.wgsl")]);
         parts.push(if samples { part!("film_samples.wgsl") } else { part!("film_pixels.wgsl") });
-        parts.extend([part!("shade.wgsl"), part!("trace.wgsl"), part!("main.wgsl")]);
+        parts.extend([part!("shade.wgsl"), part!("reflect.wgsl"), part!("stages.wgsl")]);
+        if let Some(waiting) = refraction {
+            // Only workgroup arrays may take their size from a constant of the pipeline.
+            let text = format!("const MAX_WAITING: u32 = {waiting}u;\n").into();
+            parts.extend(refract_parts(kernel));
+            parts.extend([Part { name: "(the host)", text }, part!("trees.wgsl")]);
+        } else {
+            parts.push(part!("paths.wgsl"));
+        }
         Self::join(parts)
     }
 
-    /// The module that goes from one bounce of the paths to the next.
-    pub fn advance() -> Self {
+    /// The module that goes from one stage to the next.
+    pub fn between_stages() -> Self {
         Self::join(vec![part!("stage.wgsl")])
     }
 
@@ -185,13 +203,15 @@ impl Module {
     /// The module that sends batches of rays through `kernel`.
     pub fn probe(kernel: Kernel) -> Self {
         let mut parts = intersection_parts(kernel, Storage::Ranges);
-        parts.extend([part!("film.wgsl"), part!("shade.wgsl"), part!("trace.wgsl"), part!("probe.wgsl")]);
+        parts.extend([part!("film.wgsl"), part!("shade.wgsl"), part!("reflect.wgsl")]);
+        parts.extend(refract_parts(kernel));
+        parts.push(part!("probe.wgsl"));
         parts.push(if kernel.carries_low() { part!("probe_robust.wgsl") } else { part!("probe_plain.wgsl") });
         Self::join(parts)
     }
 
     fn join(parts: Vec<Part>) -> Self {
-        Self { text: parts.iter().map(|part| part.text).collect(), parts }
+        Self { text: parts.iter().map(|part| part.text.as_ref()).collect(), parts }
     }
 
     /// The file and line, both as a person counts, of line `line` (from 1) of the joined text.

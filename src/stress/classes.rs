@@ -10,6 +10,8 @@ pub(super) enum Kind {
     Rays(Generator),
     /// The same, and whether the light reaches the hit.
     Lit(LitGenerator),
+    /// The hit at the end of a path through glass.
+    Refraction(Generator),
     ZeroScale,
     NegativeScale,
     BitPatterns,
@@ -78,6 +80,9 @@ pub fn classes() -> Vec<Class> {
         let target = limits(&[(Wrong, 0.0), (Acne, 0.0), (Leaks, 0.0)]);
         Case { label, kind: Kind::Lit(generator), targets: same(target) }
     };
+    let glass = |label, generator: Generator, targets| Case { label, kind: Kind::Refraction(generator), targets };
+    // Without f64, `double` bends rays like `robust`.
+    let path = |fast, careful| [fast, careful, careful].map(|p999| limits(&[(Wrong, 10.0), (P999, p999)]));
     let special = |kind, targets| Case { label: "", kind, targets };
     let class = |id, name, about, counted, cases| Class { id, name, about, counted, cases };
     let none_differs = || same(limits(&[(Differing, 0.0)]));
@@ -281,6 +286,19 @@ pub fn classes() -> Vec<Class> {
                 Kind::Transforms,
                 [Target::NotApplicable, limits(&[(Differing, 0.0)]), Target::NotApplicable],
             )],
+        ),
+        class(
+            23,
+            "refraction",
+            "paths through glass: in and out, beyond the critical angle, from wall to wall",
+            "wrong, p99.9",
+            vec![
+                glass("balls", rays::glass_balls, path(5.0, 5.0)),
+                glass("eta 1 + 2^-20", rays::thin_air, path(3.0, 3.0)),
+                glass("ellipsoids", rays::glass_ellipsoids, path(16.0, 6.0)),
+                glass("bubbles", rays::bubbles, path(4.0, 4.0)),
+                glass("diamonds", rays::diamonds, path(250.0, 200.0)),
+            ],
         ),
     ]
 }

@@ -140,7 +140,7 @@ struct Shared {
 impl Shared {
     fn new(case: &Case, mut random: Random, count: usize) -> Self {
         let (batch, lit) = match case.kind {
-            Kind::Rays(generate) => (generate(&mut random, count), Vec::new()),
+            Kind::Rays(generate) | Kind::Refraction(generate) => (generate(&mut random, count), Vec::new()),
             Kind::Lit(generate) => generate(&mut random, count),
             _ => Default::default(),
         };
@@ -174,6 +174,7 @@ impl Shared {
                 Ok(Some(judge(&self.batch, &answers, truth, given, band(tier))))
             }
             Kind::Lit(_) => self.measure_light(prober, given).map(Some),
+            Kind::Refraction(_) => special::refraction(prober, given, &self.batch).map(Some),
             Kind::ZeroScale => picture(|_, _| Ok(special::zero_scale())),
             Kind::NegativeScale => special::negative_scale(prober, &mut random, self.count).map(Some),
             Kind::BitPatterns => special::bit_patterns(prober, &mut random, 2 * self.count).map(Some),

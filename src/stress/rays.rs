@@ -289,6 +289,44 @@ pub(super) fn between_mirrors(random: &mut Random, count: usize) -> Batch {
     batch
 }
 
+/// Rays that go into a body of glass at the origin, or start in it, with a screen of glass around; the screen is met in the end.
+fn through(random: &mut Random, count: usize, scale: DVec3, born_inside: bool, eta: f64, bounces: u32) -> Batch {
+    let glass = |batch: &mut Batch, random: &mut Random| {
+        let target = random.in_ball() * scale;
+        let origin = if born_inside { random.in_ball() * 0.9 * scale } else { random.unit() * 5.0 };
+        let direction = (target - origin).normalize() * random.within(0.5, 2.0);
+        let center = random.in_box(2.0);
+        let bodies = [(center, scale), (center + random.in_box(0.5), DVec3::splat(20.0))];
+        add(batch, center + origin, direction, &bodies);
+    };
+    Batch { bounces, eta, ..each(count, |batch, _| glass(batch, random)) }
+}
+
+/// In and out of balls.
+pub(super) fn glass_balls(random: &mut Random, count: usize) -> Batch {
+    through(random, count, DVec3::ONE, false, 1.5, 2)
+}
+
+/// In and out of balls that are all but air, where Snell's law is nearly the identity.
+pub(super) fn thin_air(random: &mut Random, count: usize) -> Batch {
+    through(random, count, DVec3::ONE, false, 1.0 + 1.0 / f64::from(1 << 20), 2)
+}
+
+/// In and out of ellipsoids.
+pub(super) fn glass_ellipsoids(random: &mut Random, count: usize) -> Batch {
+    through(random, count, DVec3::new(1.0, 0.75, 0.5), false, 1.5, 2)
+}
+
+/// Bubbles: those beyond the critical angle turn back at once and meet the screen, then leave it.
+pub(super) fn bubbles(random: &mut Random, count: usize) -> Batch {
+    through(random, count, DVec3::ONE, false, 0.75, 2)
+}
+
+/// Born in diamonds, reflected from wall to wall.
+pub(super) fn diamonds(random: &mut Random, count: usize) -> Batch {
+    through(random, count, DVec3::new(1.0, 0.75, 0.5), true, 2.5, 4)
+}
+
 /// What the light of a ray ought to do.
 pub(super) type LitGenerator = fn(&mut Random, usize) -> (Batch, Vec<bool>);
 

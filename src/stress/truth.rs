@@ -35,14 +35,14 @@ pub(super) enum Given {
 }
 
 impl Given {
-    fn ray(self, ray: &ProbeRay) -> ProbeRay {
+    pub(super) fn ray(self, ray: &ProbeRay) -> ProbeRay {
         match self {
             Self::Whole => *ray,
             Self::Rounded => ProbeRay { origin: single(ray.origin), direction: single(ray.direction), ..*ray },
         }
     }
 
-    fn surface(self, surface: &Surface) -> Surface {
+    pub(super) fn surface(self, surface: &Surface) -> Surface {
         if self == Self::Whole {
             return *surface;
         }

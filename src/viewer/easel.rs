@@ -249,6 +249,9 @@ impl<'g> Easel<'g> {
         if self.tell && self.desk.is_open() {
             self.send_state(setting);
         }
+        if self.trouble.is_some() {
+            return Ok(());
+        }
         self.measure(setting)
     }
 
@@ -260,6 +263,11 @@ impl<'g> Easel<'g> {
         let size = fitted(wishes.size(setting.scene), setting.pixels);
         let mut part = largest(setting.scene, &settings, PREVIEW_SPHERES);
         let effects = Effects::requested(&part, &settings, &wishes.effects);
+        if effects.too_deep(&part).is_some() {
+            // The whole scene says why.
+            self.preview = Some((version, Instant::now()));
+            return Ok(());
+        }
         let ladder = self.gpu.map_or(&Tier::ALL[..], Gpu::ladder);
         let tier = Selection::of(&settings.view.relative(&part), &effects, wishes.precision, ladder).tier;
         let backend = self.gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, tier));
@@ -305,9 +313,15 @@ impl<'g> Easel<'g> {
             step = if worth_it { (step / 4).max(1) } else { 1 };
         }
         to_come.extend(coarse.into_iter().rev());
+        let trouble = effects.too_deep(setting.scene);
+        if trouble.is_some() {
+            // The last picture stays.
+            to_come.clear();
+            self.tell = true;
+        }
         let took = ms(start.elapsed());
         self.subject = Some(Subject { version, wishes, settings, effects, selection, size, to_come, took });
-        (self.pass, self.measurement, self.trouble) = (None, None, None);
+        (self.pass, self.measurement, self.trouble) = (None, None, trouble);
     }
 
     /// Prepares the next picture.

@@ -8,7 +8,6 @@ use std::time::{Duration, SystemTime};
 use serde::Serialize;
 
 use super::desk::{Bell, lock};
-use crate::engine::unsupported;
 use crate::scene::{Scene, Severity, parse};
 
 /// Time between two looks at the file.
@@ -70,15 +69,7 @@ fn read(name: &str, path: &Path) -> Result<Scene, Reading> {
     let line = parsed.diagnostics.iter().find(|diagnostic| diagnostic.severity == Severity::Error);
     let line = line.map_or(0, |diagnostic| diagnostic.line);
     let report = parsed.report(false);
-    let scene = parsed.scene.ok_or(Reading { line, text: report })?;
-    if let Some(sphere) = unsupported(&scene) {
-        let name = scene.sphere_names.get(sphere);
-        return Err(Reading {
-            line: 0,
-            text: format!("sphere '{name}' has Kt > 0: refraction cannot be rendered yet"),
-        });
-    }
-    Ok(scene)
+    parsed.scene.ok_or(Reading { line, text: report })
 }
 
 /// Time of the last change and size: what a poll compares.

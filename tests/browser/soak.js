@@ -56,7 +56,7 @@ const actions = {
     await page.mouse.up();
   },
   async wheel(page) { await page.mouse.wheel(0, pick([-100, 100])); },
-  async effect(page) { await page.locator('.effect input').nth(Math.floor(random() * 7)).click(); },
+  async effect(page) { await page.locator('.effect input').nth(Math.floor(random() * 8)).click(); },
   async auto(page) { await page.locator('#auto').click(); },
   async choose(page) {
     const [id, values] = pick([['#spp', ['1', '4', '9']], ['#precision', ['auto', 'fast', 'double']],

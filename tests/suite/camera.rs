@@ -232,8 +232,8 @@ proptest! {
                 }
             }
             // Tiles that are covered are those with lists, in pieces as well.
-            let pieces: Vec<_> = (0..height).step_by(16).flat_map(|y| lists.covered(y, 16)).collect();
-            prop_assert_eq!(pieces, lists.covered(0, height));
+            let pieces: Vec<_> = (0..height).step_by(16).flat_map(|y| lists.cover().covered(y, 16)).collect();
+            prop_assert_eq!(pieces, lists.cover().covered(0, height));
         }
     }
 }
@@ -254,7 +254,7 @@ fn tiles_follow_the_outline() {
     let count = |scene: &Scene, view| {
         let settings = Settings { view, ..Settings::classic() };
         let camera = Camera::new(scene, &settings);
-        Acceleration::new(scene, &camera, EffectSet::ALL, Rounding::SINGLE).screen.covered(0, 800).len() as f64
+        Acceleration::new(scene, &camera, EffectSet::ALL, Rounding::SINGLE).screen.cover().covered(0, 800).len() as f64
     };
     let outlined = count(&scene, View::FILE);
     // The ellipse covers π/4 of its rectangle, of about 267 × 444 pixels.

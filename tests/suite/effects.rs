@@ -59,6 +59,11 @@ fn table() -> Vec<(String, Effect, bool, &'static str)> {
         (lone("1 0 0 0 1"), Effect::Reflections, false, "no sphere has Kr > 0"),
         (lone("1 0 0 1 1") + &sphere("b", [5.0, 0.0, -5.0], 1.0, "1 0 0 0 1"), Effect::Reflections, true, "one bounce"),
         (lone("1 0 0 1 1") + &sphere("b", [5.0, 0.0, -5.0], 1.0, "1 0 0 1 1"), Effect::Reflections, true, "'s' has Kr"),
+        (lone("1 0 0 0 1"), Effect::Refraction, false, "no sphere has Kt > 0"),
+        (lone("1 0 0 0 1 0 1.5"), Effect::Refraction, false, "no sphere has Kt > 0"),
+        (lone("1 0 0 0 1 0.5 1.5"), Effect::Refraction, true, "sphere 's' has Kt > 0"),
+        (lone("0 1 0 0 1 0.5 1.5") + LIGHT, Effect::Shadows, true, "shows inner walls"),
+        (lone("1 0 0 1 1 0.5 1.5"), Effect::Reflections, true, "'s' has Kr > 0"),
         (lone("1 0 0 0 1"), Effect::Shells, false, "wholly beyond the image plane"),
         (sphere("s", [0.0, 0.0, -1.4], 0.4, "1 0 0 0 1"), Effect::Shells, true, "sphere 's' is not wholly beyond"),
         (sphere("s", [0.0, 0.0, 5.0], 0.4, "1 0 0 0 1"), Effect::Shells, true, "sphere 's' is not wholly beyond"),
@@ -90,7 +95,12 @@ fn only_the_depth_that_can_matter_is_followed() {
     assert_eq!(depth(mirror.clone()), 0);
     assert_eq!(depth(mirror.clone() + &plain), 1);
     assert_eq!(depth(mirror.clone() + &touching), 7);
-    assert_eq!(depth(mirror + &second), 7);
+    assert_eq!(depth(mirror.clone() + &second), 7);
+    let glass = sphere("g", [5.0, 0.0, -5.0], 1.0, "1 0 0 0 1 0.5 1.5");
+    assert_eq!(depth(glass.clone()), 7);
+    assert_eq!(depth(mirror + &glass), 7);
+    let flat = Settings { max_depth: 0, ..Settings::classic() };
+    assert!(!Effects::of(&scene_of(&glass), &flat).set.has(Effect::Refraction));
 }
 
 #[test]
@@ -128,9 +138,12 @@ fn any_sphere() -> impl Strategy<Value = String> {
     let axis = || prop_oneof![Just(1.0), Just(0.5), 0.1..2.5];
     let axes = prop_oneof![axis().prop_map(|s| [s; 3]), [axis(), axis(), axis()]];
     let coefficients = [coefficient(), coefficient(), coefficient(), coefficient()];
-    ([-3.0..3.0, -3.0..3.0, -9.0..-0.5], axes, coefficients).prop_map(|([x, y, z], [a, b, c], [ka, kd, ks, kr])| {
-        format!("SPHERE s {x} {y} {z} {a} {b} {c} 0.9 0.6 0.3 {ka} {kd} {ks} {kr} 20\n")
-    })
+    let glass = prop_oneof![4 => Just(String::new()), 1 => (0.5_f64..2.0).prop_map(|eta| format!("0.8 {eta}"))];
+    ([-3.0..3.0, -3.0..3.0, -9.0..-0.5], axes, coefficients, glass).prop_map(
+        |([x, y, z], [a, b, c], [ka, kd, ks, kr], glass)| {
+            format!("SPHERE s {x} {y} {z} {a} {b} {c} 0.9 0.6 0.3 {ka} {kd} {ks} {kr} 20 {glass}\n")
+        },
+    )
 }
 
 fn any_light() -> impl Strategy<Value = String> {

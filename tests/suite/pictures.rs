@@ -15,7 +15,7 @@ use trueray::{gpu, tiles};
 use crate::support::{cpu_picture, gpu, gpu_picture, scene, scene_files, scene_of};
 
 /// Scenes whose every pixel all tiers promise.
-const ORDINARY: [&str; 2] = ["basic", "effects"];
+const ORDINARY: [&str; 3] = ["basic", "effects", "refraction"];
 
 fn conventions() -> [(&'static str, Settings); 3] {
     let blinn = Settings { specular: Specular::Blinn, max_depth: 5, ..Settings::exact() };
@@ -183,7 +183,7 @@ fn tiers(gpu: &gpu::Gpu) -> impl Iterator<Item = Tier> {
 fn robust_and_double_differ_from_the_reference_only_where_explained() {
     let test = "robust_and_double_differ_from_the_reference_only_where_explained";
     let Some(gpu) = gpu(test) else { return };
-    for file in scene_files(&["basic", "effects", "hard"]) {
+    for file in scene_files(&["basic", "effects", "refraction", "hard"]) {
         let scene = scene(&file);
         for (name, settings) in &conventions()[..2] {
             let effects = Effects::of(&scene, settings);

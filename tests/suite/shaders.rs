@@ -1,8 +1,12 @@
 //! The composed WGSL: every effect set is valid, and the structs are those of the host.
 
-use trueray::effects::{EffectSet, Effects, Request};
+use std::num::NonZeroU32;
+
+use trueray::accel::Acceleration;
+use trueray::camera::Camera;
+use trueray::effects::{Effect, EffectSet, Effects, Request};
 use trueray::gpu::layout::{double, single};
-use trueray::gpu::{ENTRY_POINT, Kernel, Module, SelfTest, Specialisation, echo_layout};
+use trueray::gpu::{Kernel, Module, SEE_TILES, SHADE_HITS, SelfTest, Specialisation, Storage, WALK_PATHS, echo_layout};
 
 use trueray::precision::Tier;
 use trueray::settings::Settings;
@@ -10,9 +14,9 @@ use trueray::settings::Settings;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 /// Every kernel, for any number of spheres and for few.
-fn kinds() -> impl Iterator<Item = (Kernel, Option<[u32; 2]>)> {
+fn kinds() -> impl Iterator<Item = (Kernel, Storage)> {
     let kernels = Tier::ALL.map(Kernel::Tier).into_iter().chain([Kernel::Pairs]);
-    kernels.flat_map(|kernel| [(kernel, None), (kernel, Some([3, 2]))])
+    kernels.flat_map(|kernel| [Storage::Many, Storage::Few([3, 2])].map(|storage| (kernel, storage)))
 }
 
 fn validate(module: &naga::Module) -> naga::valid::ModuleInfo {
@@ -21,19 +25,30 @@ fn validate(module: &naga::Module) -> naga::valid::ModuleInfo {
 
 #[test]
 fn every_effect_set_is_valid() {
-    for (kernel, few) in kinds() {
-        let module = Module::render(kernel, few.is_some()).parse().unwrap();
-        let info = validate(&module);
+    for (kernel, storage) in kinds() {
+        let modules = [None, NonZeroU32::new(3)].map(|refraction| {
+            let module = Module::render(kernel, storage, false, refraction).parse().unwrap();
+            let info = validate(&module);
+            (refraction, module, info)
+        });
         for effects in EffectSet::every() {
+            let (refraction, module, info) = &modules[usize::from(effects.has(Effect::Refraction))];
             for flags in 0..8 {
                 let [skip_self, blinn, count_rays] = [1, 2, 4].map(|bit| flags & bit != 0);
-                let specialisation =
-                    Specialisation { kernel, effects, skip_self, blinn, few, samples: 1 + flags / 4, count_rays };
+                let specialisation = Specialisation {
+                    kernel,
+                    effects,
+                    refraction: *refraction,
+                    skip_self,
+                    blinn,
+                    storage,
+                    samples: 1,
+                    count_rays,
+                };
                 let constants = specialisation.constants().into_iter().map(|(name, value)| (name.to_owned(), value));
                 let constants = constants.collect();
-                let entry_point = Some((naga::ShaderStage::Compute, ENTRY_POINT));
                 let (specialised, _) =
-                    naga::back::pipeline_constants::process_overrides(&module, &info, entry_point, &constants).unwrap();
+                    naga::back::pipeline_constants::process_overrides(module, info, None, &constants).unwrap();
                 validate(&specialised);
             }
         }
@@ -43,15 +58,16 @@ fn every_effect_set_is_valid() {
 /// A constant that the shader does not declare would be ignored silently by the validation above.
 #[test]
 fn every_constant_is_an_override_and_every_override_is_set() {
-    for (kernel, few) in kinds() {
-        let module = Module::render(kernel, few.is_some()).parse().unwrap();
+    for ((kernel, storage), refraction) in kinds().flat_map(|kind| [(kind, None), (kind, NonZeroU32::new(1))]) {
+        let module = Module::render(kernel, storage, false, refraction).parse().unwrap();
         let mut declared: Vec<_> = module.overrides.iter().map(|(_, o)| o.name.clone().unwrap()).collect();
         let specialisation = Specialisation {
             kernel,
             effects: EffectSet::ALL,
+            refraction,
             skip_self: true,
             blinn: true,
-            few,
+            storage,
             samples: 2,
             count_rays: true,
         };
@@ -59,6 +75,21 @@ fn every_constant_is_an_override_and_every_override_is_set() {
         declared.sort();
         set.sort();
         assert_eq!(declared, set);
+    }
+}
+
+/// Scenes without Kt compile what they did before there was any refraction.
+#[test]
+fn only_refraction_brings_its_text() {
+    for (kernel, storage) in kinds() {
+        let [without, with] = [None, NonZeroU32::new(3)].map(|waiting| Module::render(kernel, storage, false, waiting));
+        assert!(!without.text.contains("glasses") && !without.text.contains("MAX_WAITING"));
+        assert!(with.text.contains("const MAX_WAITING: u32 = 3u;"));
+        let (file, line) =
+            with.place(with.text.lines().position(|line| line.contains("fn tree_color(")).unwrap() as u32 + 1);
+        let text = std::fs::read_to_string(crate::support::root().join(&file)).unwrap();
+        assert_eq!(file, "shaders/trees.wgsl");
+        assert!(text.lines().nth(line as usize - 1).unwrap().contains("fn tree_color("));
     }
 }
 
@@ -74,6 +105,8 @@ fn structs_lie_in_memory_as_the_shader_reads_them() {
             ("Shape", single::Shape::FIELDS, size_of::<single::Shape>()),
             ("Material", single::Material::FIELDS, size_of::<single::Material>()),
             ("Light", single::Light::FIELDS, size_of::<single::Light>()),
+            ("Face", single::Face::FIELDS, size_of::<single::Face>()),
+            ("Glass", single::Glass::FIELDS, size_of::<single::Glass>()),
         ],
     );
     assert_layout(
@@ -83,12 +116,14 @@ fn structs_lie_in_memory_as_the_shader_reads_them() {
             ("Shape", double::Shape::FIELDS, size_of::<double::Shape>()),
             ("Material", double::Material::FIELDS, size_of::<double::Material>()),
             ("Light", double::Light::FIELDS, size_of::<double::Light>()),
+            ("Face", double::Face::FIELDS, size_of::<double::Face>()),
+            ("Glass", double::Glass::FIELDS, size_of::<double::Glass>()),
         ],
     );
 }
 
-fn assert_layout(tier: Tier, structs: [(&str, Fields, usize); 4]) {
-    let module = Module::render(Kernel::Tier(tier), false).parse().unwrap();
+fn assert_layout(tier: Tier, structs: [(&str, Fields, usize); 6]) {
+    let module = Module::render(Kernel::Tier(tier), Storage::Many, false, NonZeroU32::new(3)).parse().unwrap();
     for (name, fields, size) in structs {
         let (_, found) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).unwrap();
         let naga::TypeInner::Struct { members, span } = &found.inner else { panic!("{name}") };
@@ -100,43 +135,79 @@ fn assert_layout(tier: Tier, structs: [(&str, Fields, usize); 4]) {
 }
 
 #[test]
+fn paths_are_as_large_as_their_buffer_assumes() {
+    for (kernel, storage) in kinds() {
+        let module = Module::render(kernel, storage, false, None).parse().unwrap();
+        let (_, path) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some("Path")).unwrap();
+        let naga::TypeInner::Struct { span, .. } = path.inner else { panic!("{path:?}") };
+        assert_eq!(u64::from(span), kernel.path_size(), "{kernel:?}");
+    }
+}
+
+#[test]
+fn the_small_modules_are_valid_and_have_their_entry_points() {
+    let entry_points = |module: Module| {
+        let module = module.parse().unwrap();
+        validate(&module);
+        module.entry_points.into_iter().map(|entry| entry.name).collect::<Vec<_>>()
+    };
+    assert_eq!(entry_points(Module::between_stages()), ["begin_shading", "begin_bounce"]);
+    for (kernel, storage) in kinds() {
+        assert_eq!(entry_points(Module::resolve(kernel)), ["resolve"]);
+        for samples in [false, true] {
+            let paths = Module::render(kernel, storage, samples, None);
+            assert_eq!(entry_points(paths), [SEE_TILES, WALK_PATHS, SHADE_HITS]);
+            let trees = Module::render(kernel, storage, samples, NonZeroU32::new(3));
+            assert_eq!(entry_points(trees), [SEE_TILES, SHADE_HITS]);
+        }
+    }
+    let many = Module::render(Kernel::Tier(Tier::Fast), Storage::ManyLights, false, None);
+    assert_eq!(entry_points(many), [SEE_TILES, WALK_PATHS, SHADE_HITS]);
+}
+
+#[test]
 fn bindings_are_numbered_without_gaps() {
-    for (kernel, few) in kinds() {
-        let module = Module::render(kernel, few.is_some()).parse().unwrap();
+    for (kernel, storage) in kinds() {
+        let module = Module::render(kernel, storage, false, NonZeroU32::new(3)).parse().unwrap();
         let mut bindings: Vec<_> =
             module.global_variables.iter().filter_map(|(_, v)| Some((v.binding?.binding, v.name.clone()?))).collect();
         bindings.sort();
         let names: Vec<_> = bindings.iter().map(|(_, name)| name.as_str()).collect();
-        let expected = [
+        let mut expected = vec![
             "params",
             "shapes",
             "materials",
             "lights",
-            "columns",
-            "rows",
+            "window",
+            "glasses",
             "tiles",
             "pixels",
             "ray_counts",
             "shapes_low",
             "lights_low",
+            "stage",
         ];
+        if storage == Storage::Many {
+            expected.extend(["lists", "faces"]);
+        }
         assert_eq!(names, expected);
-        assert!(bindings.iter().enumerate().all(|(i, (binding, _))| i as u32 == *binding));
+        // 11 is that of the paths, which trees have no need of.
+        assert!(bindings.iter().enumerate().all(|(i, (binding, _))| i as u32 + u32::from(i > 10) == *binding));
     }
 }
 
 #[test]
 fn an_error_in_the_shader_names_its_file_and_line() {
-    let mut module = Module::render(Kernel::Tier(Tier::Fast), false);
-    let line = 1 + module.text.lines().position(|line| line.contains("fn trace(")).unwrap() as u32;
+    let mut module = Module::render(Kernel::Tier(Tier::Fast), Storage::Many, false, None);
+    let line = 1 + module.text.lines().position(|line| line.contains("fn reflection_ray(")).unwrap() as u32;
     let (file, line_in_file) = module.place(line);
-    assert_eq!(file, "shaders/trace.wgsl");
+    assert_eq!(file, "shaders/reflect.wgsl");
     let text = std::fs::read_to_string(crate::support::root().join(&file)).unwrap();
-    assert!(text.lines().nth(line_in_file as usize - 1).unwrap().contains("fn trace("));
+    assert!(text.lines().nth(line_in_file as usize - 1).unwrap().contains("fn reflection_ray("));
 
-    module.text = module.text.replace("fn trace(primary: Ray)", "fn trace(primary: Roy)");
+    module.text = module.text.replace("fn reflection_ray(surface: Surface)", "fn reflection_ray(surface: Surfaze)");
     let error = module.parse().unwrap_err();
-    assert!(error.contains(&format!("shaders/trace.wgsl:{line_in_file}:")), "{error}");
+    assert!(error.contains(&format!("shaders/reflect.wgsl:{line_in_file}:")), "{error}");
 }
 
 #[test]
@@ -163,19 +234,31 @@ fn the_device_reads_every_field_where_the_host_wrote_it() {
     let effects = Effects::requested(&scene, &settings, &Request::Exactly(EffectSet::ALL));
     let x = |i: f32| -1.0 + 2.0 * i / 40.0;
     let expected: [&[f32]; 5] = [
-        &[0.31, 0.32, 0.33, 1.0, 0.41, 0.42, 0.43, 1.0 + 1e-6, 1e-3, 1e-3, 0.0, 0.0],
+        &[0.31, 0.32, 0.33, 1.0 + 1e-6, 0.41, 0.42, 0.43, 1e-3, 1e-3, 0.0],
         &[11.0, 12.0, -13.0, 1.0, 0.5, 0.5, 0.5, 0.01, 0.02, 0.03, 0.04, 2.0, 2.0, 2.0, 0.05, 0.06, 0.07, 14.0],
         &[15.0, 16.0, -17.0, 1.0, 1.0, 0.25, 0.125, 0.11, 0.12, 0.13, 0.14, 1.0, 4.0, 8.0, 0.15, 0.16, 0.17, 18.0],
         &[21.0, 22.0, 23.0, 0.21, 0.22, 0.23],
-        &[x(2.0), -x(2.0)],
+        &[x(2.0), -0.0, -0.0, 0.0, -x(2.0), -1.0],
     ];
     let bits = |values: &[f32]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
     let mut expected = expected.map(bits);
-    expected[0].extend([2, 1, 5, 0]);
     for (sphere, index) in [(1, 0), (2, 1)] {
         expected[sphere].insert(7, index);
     }
     for kernel in Tier::ALL.into_iter().filter_map(|tier| gpu.kernel(tier).ok()) {
+        let accel = Acceleration::new(&scene, &Camera::new(&scene, &settings), effects.set, kernel.rounding());
+        let grid = accel.grid.unwrap();
+        let single = |x: f64| (x as f32).to_bits();
+        let mut expected = expected.clone();
+        expected[0].extend([single(accel.lights.slack), 40]);
+        expected[0].extend(grid.low.to_array().map(single));
+        expected[0].push(3 + accel.screen.shift);
+        expected[0].extend(grid.per_unit.to_array().map(single));
+        expected[0].push(accel.screen.across);
+        expected[0].extend(grid.cells.to_array());
+        let before_grid = std::iter::once(&accel.screen.lists).chain(&accel.lights.lists);
+        let offsets: usize = before_grid.map(|lists| lists.offsets.len()).sum();
+        expected[0].extend([offsets as u32, 2, 1, 5, 0]);
         assert_eq!(echo_layout(&gpu, &scene, &settings, &effects, kernel).unwrap(), expected.concat(), "{kernel:?}");
     }
 }

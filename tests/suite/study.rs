@@ -2,7 +2,7 @@
 
 use std::process::{Command, Output, Stdio};
 
-use trueray::effects::Effects;
+use trueray::effects::{Effect, Effects};
 use trueray::gpu::Gpu;
 use trueray::precision::{Request, Selection, Tier};
 use trueray::scene::Scene;
@@ -93,7 +93,7 @@ fn a_study_has_every_point_and_its_errors_shrink() {
             .collect();
         assert!(errors.windows(2).all(|pair| pair[1] < pair[0]), "{errors:?}");
     }
-    assert_eq!(study.effect_cost.variants.len(), 9);
+    assert_eq!(study.effect_cost.variants.len(), 2 + Effect::ALL.len());
     let report = study.report();
     assert!(report.contains("Reflection depth") && report.contains("What each effect costs"), "{report}");
 }

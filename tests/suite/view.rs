@@ -1,5 +1,6 @@
 //! The live picture: what a page would see, without a browser.
 
+use std::fmt::Write as _;
 use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::path::Path;
@@ -507,7 +508,7 @@ fn a_large_scene_is_shown_in_part_and_then_whole() {
     let mut text = "NEAR 1\nLEFT -1\nRIGHT 1\nBOTTOM -1\nTOP 1\nRES 64 48\nAMBIENT 1 1 1\n".to_owned();
     for i in 0..20_500 {
         let (x, y, z) = (i % 100 - 50, i / 100 % 100 - 50, -100 - i / 10_000);
-        text += &format!("SPHERE s {x} {y} {z} 0.4 0.4 0.4 1 0.5 0 1 0 0 0 1\n");
+        writeln!(text, "SPHERE s {x} {y} {z} 0.4 0.4 0.4 1 0.5 0 1 0 0 0 1").unwrap();
     }
     let work = Work::new(&text, false);
     let mut page = work.page();

@@ -1,4 +1,4 @@
-// From bounce to bounce; read it beside src/cpu/trace.rs.
+// The mirrored view ray and what every secondary ray shares.
 
 // The mirrored view ray, of unit length.
 fn reflection_ray(surface: Surface) -> Ray {
@@ -9,9 +9,6 @@ fn reflection_ray(surface: Surface) -> Ray {
 // Not the index of any shape: a primary ray leaves no sphere.
 const NO_SHAPE: u32 = 0xffffffffu;
 
-// Mirrors with Kr > 1 amplify no further, or products would overflow; whatever is lit at all is white long before.
+// Mirrors with Kr > 1 and glass with Kt > 1 amplify no further, or products would overflow; whatever is lit at all is white
+// long before.
 const MAX_THROUGHPUT: real = real(1e30);
-
-fn next_throughput(throughput: real, kr: real) -> real {
-    return min(throughput * kr, MAX_THROUGHPUT);
-}

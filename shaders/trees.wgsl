@@ -1,0 +1,100 @@
+// In place of paths.wgsl where something refracts: from the hit of a primary ray on, its tree of reflections and refractions;
+// read it beside src/cpu/trace_refraction.rs. The host puts before it how many rays can wait: const MAX_WAITING.
+
+// Shadow and reflection rays meet their own sphere by its analytic other root only. Refraction rays always do, so SKIP_SELF is
+// true whatever the convention.
+override SKIP_SELF_ALWAYS: bool = false;
+
+// A refraction ray that waits until the reflected ray beside it has been followed to its end.
+struct Waiting {
+    ray: Ray,
+    own: Own,
+    throughput: real,
+    depth: u32,
+}
+
+// The unclamped colour seen along the ray that has this hit: depth-first, the reflected ray first. Each depth leaves one
+// refraction ray behind at the most.
+fn tree_color(primary: Ray, seen: Hit) -> vec3r {
+    var ray = primary;
+    var own = Own(NO_SHAPE, false, vec3r());
+    var range = primary_range();
+    var hit = seen;
+    var is_primary = true;
+    var color = vec3r();
+    var throughput = real(1.0);
+    var depth = 0u;
+    var waiting: array<Waiting, MAX_WAITING>;
+    var count = 0u;
+    // One looks through glass at the background; a reflection ray that hits nothing adds black.
+    var shows_background = true;
+    loop {
+        if !is_primary {
+            hit = nearest_secondary(ray, own, range);
+        }
+        is_primary = false;
+        if hit.found {
+            var surface = surface_at(ray, hit);
+            let wall = surface.own;
+            if !SKIP_SELF_ALWAYS {
+                surface.own.shape = NO_SHAPE;
+            }
+            color += local_color(surface) * throughput;
+
+            if depth < params.max_depth {
+                let kt = glasses[surface.sphere].kt;
+                if kt != real(0.0) {
+                    var through = surface;
+                    through.own = wall;
+                    let refracted = refraction_ray(ray, through);
+                    let weight = min(throughput * kt, MAX_THROUGHPUT);
+                    waiting[count] = Waiting(refracted.ray, refracted.own, weight, depth + 1u);
+                    count++;
+                }
+                let kr = materials[surface.sphere].kr;
+                if REFLECTIONS && kr != real(0.0) {
+                    depth += 1u;
+                    throughput = min(throughput * kr, MAX_THROUGHPUT);
+                    ray = reflection_ray(surface);
+                    own = surface.own;
+                    range = reflection_range();
+                    shows_background = false;
+                    if COUNT_RAYS {
+                        reflection_rays++;
+                    }
+                    continue;
+                }
+            }
+        } else if shows_background {
+            color += params.background * throughput;
+        }
+        if count == 0u {
+            break;
+        }
+        count--;
+        ray = waiting[count].ray;
+        own = waiting[count].own;
+        range = refraction_range();
+        throughput = waiting[count].throughput;
+        depth = waiting[count].depth;
+        shows_background = true;
+        if COUNT_RAYS {
+            reflection_rays++;
+        }
+    }
+    return color;
+}
+
+// The colour of each primary hit and all that follows.
+@compute @workgroup_size(64)
+fn shade_hits(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= stage.hit_count {
+        return;
+    }
+    shadow_rays = 0u;
+    reflection_rays = 0u;
+    let at = stage.hits[id.x];
+    let hit = Hit(true, distance_of(real(0.0)), at.y & ~INSIDE, (at.y & INSIDE) != 0u);
+    finish(at.x, tree_color(ray_through(at.x), hit));
+    add_counts(at.x);
+}

@@ -1,0 +1,86 @@
+//! A pixel's colour where something refracts: the primary ray and its tree of reflections and refractions; read it beside
+//! `shaders/trace_refraction.wgsl`.
+
+use super::intersect::{Own, Ray, nearest_secondary, nearest_seen};
+use super::real::Real;
+use super::refract::{Snell, refraction_ray};
+use super::scene::World;
+use super::shade::{local_color, surface_at};
+use super::trace::{MAX_THROUGHPUT, reflection_ray};
+use super::vec3::Vec3;
+use super::witness::Witness;
+
+/// A refraction ray that waits until the reflected ray beside it has been followed to its end.
+struct Pending<T> {
+    ray: Ray<T>,
+    own: Own<T>,
+    throughput: T,
+    depth: u32,
+}
+
+/// The unclamped colour seen along `primary`: depth-first, the reflected ray first. Each depth leaves one refraction ray
+/// behind at the most, so that no more than `max_depth` wait.
+#[inline(never)]
+pub(super) fn trace_refraction<T: Real, W: Witness<T>>(
+    world: &World<T>,
+    primary: Ray<T>,
+    seen: &[u32],
+    witness: &mut W,
+) -> Vec3<T> {
+    let (mut ray, mut own, mut range) = (primary, None, world.primary);
+    let mut color = Vec3::ZERO;
+    let mut throughput = T::ONE;
+    let mut depth = 0;
+    let mut pending: Vec<Pending<T>> = Vec::new();
+    // One looks through glass at the background; a reflection ray that hits nothing adds black.
+    let mut shows_background = true;
+    let mut is_primary = true;
+    loop {
+        let hit = if is_primary {
+            nearest_seen(world, &ray, seen)
+        } else {
+            nearest_secondary(world, &ray, own.as_ref(), &range)
+        };
+        is_primary = false;
+        witness.nearest(world, &ray, own.as_ref(), &range, hit.as_ref());
+        if let Some(found) = hit {
+            let surface = surface_at(world, &ray, &found);
+            witness.surface(world, &ray, &found, &surface);
+            color += local_color(world, &surface, witness) * throughput;
+
+            if depth < world.max_depth {
+                let kt = world.glasses[surface.sphere].kt;
+                if kt != T::ZERO {
+                    let snell = Snell::at(world, &surface);
+                    let (ray, own) = refraction_ray(&ray, &surface, &snell);
+                    let throughput = weight(throughput, kt);
+                    witness.refracted(world, &surface, &snell, throughput);
+                    pending.push(Pending { ray, own, throughput, depth: depth + 1 });
+                }
+                let kr = world.materials[surface.sphere].kr;
+                if kr != T::ZERO {
+                    depth += 1;
+                    throughput = weight(throughput, kr);
+                    ray = reflection_ray(&surface);
+                    own = world.skip_self.then_some(surface.own);
+                    range = world.reflection;
+                    shows_background = false;
+                    witness.reflected(throughput);
+                    continue;
+                }
+            }
+        } else if shows_background {
+            color += world.background * throughput;
+        }
+        let Some(next) = pending.pop() else { return color };
+        (ray, own, range) = (next.ray, Some(next.own), world.refraction);
+        (throughput, depth, shows_background) = (next.throughput, next.depth, true);
+        witness.resumed();
+    }
+}
+
+/// The weight of a ray that `coefficient` of what has this weight follows.
+fn weight<T: Real>(throughput: T, coefficient: T) -> T {
+    let product = throughput * coefficient;
+    if product > T::from_f64(MAX_THROUGHPUT) { T::from_f64(MAX_THROUGHPUT) } else { product }
+}

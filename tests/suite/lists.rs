@@ -1,0 +1,147 @@
+//! Lists of spheres leave out nothing: pictures are byte for byte those for which every list has every sphere.
+
+use glam::DVec3;
+use trueray::accel::Rounding;
+use trueray::cpu::Reference;
+use trueray::effects::Effects;
+use trueray::gpu::{Gpu, GpuRenderer, Kernel};
+use trueray::precision::Tier;
+use trueray::scene::{Scene, Sphere};
+use trueray::settings::Settings;
+use trueray::stress::Random;
+
+use crate::support::scene_of;
+
+/// Kinds of scenes, each with its own difficulty.
+const KINDS: u64 = 14;
+
+/// A random scene: its kind is `seed` modulo [`KINDS`].
+fn random_scene(seed: u64) -> Scene {
+    let mut random = Random::new(4, seed);
+    let kind = seed % KINDS;
+    let mut scene = scene_of("AMBIENT 0.2 0.2 0.2\nBACK 0.1 0.2 0.3");
+    (scene.width, scene.height) = (17 + (random.bits() % 40) as u32, 9 + (random.bits() % 40) as u32);
+    let far = if kind == 8 { DVec3::new(1e5, -2e5, -3e5) } else { DVec3::ZERO };
+    let count = match kind {
+        0 => random.bits() % 5,
+        1 => 400,
+        2 => 1000,
+        _ => 17 + random.bits() % 120,
+    };
+    let cluster: Vec<DVec3> = (0..4).map(|_| random.in_box(6.0)).collect();
+    for index in 0..count {
+        let spread = if kind == 7 { 0.1 } else { 6.0 };
+        let mut center = random.in_box(spread) + DVec3::new(0.0, 0.0, -9.0);
+        let mut scale = DVec3::splat(random.within(0.1, 1.2));
+        match kind {
+            // All in one place; many of them in one place.
+            2 => (center, scale) = (DVec3::new(0.3, 0.2, -8.0), DVec3::splat(2.0)),
+            3 if index % 2 == 0 => (center, scale) = (DVec3::new(0.0, 0.0, -6.0), DVec3::new(1.0, 2.0, 1.5)),
+            // One around everything, the eye included.
+            4 if index == 5 => (center, scale) = (DVec3::ZERO, DVec3::splat(60.0)),
+            // Discs and needles.
+            5 => {
+                scale = DVec3::from_array([(); 3].map(|()| random.magnitude(-3.0, 0.5)));
+            }
+            6 => scale *= DVec3::new(random.within(0.5, 2.0), random.within(0.5, 2.0), 1.0),
+            // Close to the eye: cut by the image plane, around the eye, behind it.
+            7 => center = random.in_box(2.5),
+            // A huge one below tiny ones.
+            9 if index == 0 => (center, scale) = (DVec3::new(0.0, -1e4, -9.0), DVec3::splat(1e4 - 3.0)),
+            9 | 10 => scale *= 0.1,
+            // Touching: equal distances along shared tangents and in shared points.
+            11 => (center, scale) = ((center / 2.0).round() * 2.0, DVec3::ONE),
+            _ => {}
+        }
+        if kind == 10 {
+            center = cluster[index as usize % 4] + random.in_ball() * 0.5 + DVec3::new(0.0, 0.0, -9.0);
+        }
+        scene.spheres.push(Sphere {
+            center: center + far,
+            scale,
+            color: random.in_box(0.5) + DVec3::splat(0.5),
+            ka: 0.4,
+            kd: 0.6,
+            ks: 0.4,
+            kr: if random.bits().is_multiple_of(2) { random.within(0.1, 1.0) } else { 0.0 },
+            n: 20.0,
+            kt: 0.0,
+            eta: 1.0,
+        });
+        scene.sphere_names.push("s");
+    }
+    let lights = match kind {
+        12 => 40,
+        _ => random.bits() % 4,
+    };
+    for index in 0..lights {
+        // Far, among the spheres, inside one, on a surface.
+        let position = match (index, scene.spheres.first()) {
+            (1, Some(sphere)) => sphere.center + sphere.scale * 0.3,
+            (2, Some(sphere)) => sphere.center + DVec3::new(sphere.scale.x, 0.0, 0.0),
+            _ => far + random.in_box(if index == 0 { 40.0 } else { 8.0 }),
+        };
+        scene.lights.push(trueray::scene::Light { position, intensity: DVec3::splat(1.0 / lights as f64) });
+        scene.light_names.push("l");
+    }
+    if kind == 8 {
+        // Look at what is far off: the eye stays.
+        scene.window.left = -1.0 + far.x / -far.z;
+        scene.window.right = 1e-5 * 4.0 + far.x / -far.z;
+        scene.window.left = scene.window.right - 8e-5;
+        (scene.window.bottom, scene.window.top) = (far.y / -far.z - 4e-5, far.y / -far.z + 4e-5);
+    }
+    scene
+}
+
+fn settings_of(seed: u64) -> Settings {
+    let settings = if (seed / KINDS).is_multiple_of(2) { Settings::classic() } else { Settings::exact() };
+    Settings {
+        max_depth: [3, 0, 1, 8][(seed / KINDS % 4) as usize],
+        samples: 1 + u32::from(seed % 23 == 22),
+        ..settings
+    }
+}
+
+fn cpu(scene: &Scene, settings: &Settings, rounding: Rounding) -> Vec<u8> {
+    let mut rgb = vec![0; scene.width as usize * scene.height as usize * 3];
+    let effects = Effects::of(scene, settings);
+    Reference::<f64>::with_rounding(scene, settings, &effects, rounding).rows(0, &mut rgb);
+    rgb
+}
+
+fn device(gpu: &Gpu, kernel: Kernel, scene: &Scene, settings: &Settings, rounding: Rounding) -> Vec<u8> {
+    let mut rgb = vec![0; scene.width as usize * scene.height as usize * 3];
+    let effects = Effects::of(scene, settings);
+    let renderer = GpuRenderer::with_rounding(gpu, scene, settings, &effects, kernel, rounding);
+    renderer.unwrap().rows(0, &mut rgb).unwrap();
+    rgb
+}
+
+fn first_difference(a: &[u8], b: &[u8], scene: &Scene) -> Option<(usize, usize)> {
+    let at = a.iter().zip(b).position(|(a, b)| a != b)? / 3;
+    Some((at % scene.width as usize, at / scene.width as usize))
+}
+
+#[test]
+fn the_reference_leaves_out_nothing() {
+    for seed in 0..420 {
+        let (scene, settings) = (random_scene(seed), settings_of(seed));
+        let all = cpu(&scene, &settings, Rounding::UNKNOWN);
+        let lists = cpu(&scene, &settings, Rounding::DOUBLE);
+        assert_eq!(first_difference(&all, &lists, &scene), None, "scene {seed}");
+    }
+}
+
+#[test]
+fn the_device_leaves_out_nothing_at_any_tier() {
+    let Some(gpu) = crate::support::gpu("the_device_leaves_out_nothing_at_any_tier") else { return };
+    for kernel in Tier::ALL.into_iter().filter_map(|tier| gpu.kernel(tier).ok()) {
+        for seed in 0..140 {
+            let (scene, settings) = (random_scene(seed), settings_of(seed));
+            let all = device(&gpu, kernel, &scene, &settings, Rounding::UNKNOWN);
+            let lists = device(&gpu, kernel, &scene, &settings, kernel.rounding());
+            assert_eq!(first_difference(&all, &lists, &scene), None, "{kernel:?}, scene {seed}");
+        }
+    }
+}
