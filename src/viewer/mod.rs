@@ -1,7 +1,7 @@
 //! A live picture in the browser: a local server, one page, one thread that renders for all pages in turn.
 //!
 //! What a page wishes is kept on its [`Desk`], the newest wish in place of all older ones; the [`Studio`] looks there
-//! whenever it is that page's turn, and lays down what it has painted for the [`server`] to send. A desk has room for a few
+//! whenever it is that page's turn, and lays down what it has painted for the server to send. A desk has room for a few
 //! messages that the page has not acknowledged; while it is full nothing is rendered for that page, so that a slow
 //! connection gets newer pictures and never a queue.
 
