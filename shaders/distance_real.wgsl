@@ -6,6 +6,11 @@ fn distance_of(t: real) -> Distance {
     return t;
 }
 
+// The second where `is_second`, else the first.
+fn either(first: Distance, second: Distance, is_second: bool) -> Distance {
+    return select(first, second, is_second);
+}
+
 fn nearest_real(t: Distance) -> real {
     return t;
 }

@@ -37,28 +37,28 @@ fn echo_layout() {
     for (var axis = 0u; axis < 3u; axis++) {
         echo_bits(params.grid_cells[axis]);
     }
-    echo_bits(params.grid_offsets);
-    echo_bits(params.sphere_count);
+    echo_bits(params.grid_first);
+    echo_bits(params.window_low);
     echo_bits(params.light_count);
     echo_bits(params.max_depth);
     echo_bits(params.zero);
-    for (var i = 0u; i < params.sphere_count; i++) {
-        echo3(shapes[i].center_radius.xyz);
-        echo(shapes[i].center_radius.w);
-        echo3(shapes[i].inv_scale);
-        echo_bits(shapes[i].index);
-        echo3(materials[i].color);
-        echo(materials[i].ka);
-        echo3(materials[i].scale);
-        echo(materials[i].kd);
-        echo(materials[i].ks);
-        echo(materials[i].kr);
-        echo(materials[i].n);
+    for (var i = 0u; i < 2u; i++) {
+        echo3(shape_of(i).center_radius.xyz);
+        echo(shape_of(i).center_radius.w);
+        echo3(shape_of(i).inv_scale);
+        echo_bits(shape_of(i).index);
+        echo3(material_of(i).color);
+        echo(material_of(i).ka);
+        echo(material_of(i).kd);
+        echo(material_of(i).ks);
+        echo(material_of(i).kr);
+        echo(material_of(i).n);
+        echo3(material_of(i).scale);
     }
     for (var i = 0u; i < params.light_count; i++) {
         echo3(lights[i].position);
         echo3(lights[i].intensity);
     }
-    echo3(window[params.sphere_count].xyz);
-    echo3(window[params.window_rows + params.sphere_count].xyz);
+    echo3(window_at(2u));
+    echo3(window_at(params.window_rows + 2u));
 }

@@ -9,11 +9,9 @@ fn nearest_hit(ray: Ray, own: Own, within: Range) -> Hit {
         return nearest;
     }
     loop {
-        let root = accepted_root(ray, sphere, own, range);
-        if root.counts {
-            nearest = Hit(true, root.t, sphere, root.inside);
-            range.t_max = root.t;
-        }
+        let root = accepted_root(ray, body_of(sphere), own, range);
+        nearest = nearer_hit(nearest, Hit(true, root.t, sphere, root.inside), root.counts);
+        range.t_max = either(range.t_max, root.t, root.counts);
         sphere++;
         if sphere == sphere_count() {
             break;
@@ -22,27 +20,17 @@ fn nearest_hit(ray: Ray, own: Own, within: Range) -> Hit {
     return nearest;
 }
 
-// The nearest intersection of a primary ray through the tile of this pixel.
-fn nearest_seen(ray: Ray, pixel: vec2<u32>) -> Hit {
-    return nearest_hit(ray, Own(NO_SHAPE, false, vec3r()), primary_range());
-}
-
-// The nearest intersection of a ray that leaves a surface.
-fn nearest_secondary(ray: Ray, own: Own, range: Range) -> Hit {
-    return nearest_hit(ray, own, range);
-}
-
 // Whether any sphere stands between the ray's origin and the light with this index, at t = 1.
-fn any_hit(ray: Ray, own: Own, light: u32) -> bool {
+fn any_hit(ray: Ray, own: Own, light: u32, is_asked: bool) -> bool {
     var blocked = false;
     var sphere = first_sphere();
     if sphere == sphere_count() {
         return blocked;
     }
     loop {
-        blocked |= blocks(ray, sphere, own);
+        blocked |= blocks(ray, body_of(sphere), own, params.shadow_t_min);
         sphere++;
-        if sphere == sphere_count() || (LEAVES_EARLY && blocked) {
+        if sphere == sphere_count() || blocked {
             break;
         }
     }

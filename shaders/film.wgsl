@@ -7,6 +7,15 @@
 var<private> shadow_rays: u32;
 var<private> reflection_rays: u32;
 
+// For a slot of which nothing has been counted yet.
+fn begin_counts(slot: u32) {
+    shadow_rays = 0u;
+    reflection_rays = 0u;
+    if COUNT_RAYS {
+        ray_counts[slot] = 0u;
+    }
+}
+
 fn add_counts(slot: u32) {
     if COUNT_RAYS {
         let before = ray_counts[slot];

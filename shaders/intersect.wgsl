@@ -1,4 +1,6 @@
 // What counts as a hit, over the roots that the tier's kernel finds; read it beside src/cpu/intersect.rs.
+//
+// No branches: software devices execute both sides of each.
 
 // The sphere that a secondary ray leaves.
 struct Own {
@@ -38,10 +40,10 @@ fn reflection_range() -> Range {
 }
 
 // Where a ray that starts on the inner wall leaves its own sphere: C = 0, so t = -2B/A and no quadratic is needed.
-fn exit_root(own: Own, direction_in_world: vec3r, sphere: u32) -> real {
+fn exit_root(own: Own, direction_in_world: vec3r, body: Body) -> real {
     var direction = direction_in_world;
     if ELLIPSOIDS {
-        direction *= shapes[sphere].inv_scale;
+        direction *= body.shape.inv_scale;
     }
     let projection = -dot(own.local, direction);
     return (projection + projection) / dot(direction, direction);
@@ -55,30 +57,43 @@ struct Root {
     inside: bool,
 }
 
-fn accepted_root(ray: Ray, sphere: u32, own: Own, range: Range) -> Root {
-    if SKIP_SELF && own.shape == shapes[sphere].index {
+fn accepted_root(ray: Ray, body: Body, own: Own, range: Range) -> Root {
+    let roots = roots(ray, body);
+    let is_lesser = is_beyond(roots.lesser, range.t_min);
+    var t = either(roots.greater, roots.lesser, is_lesser);
+    var is_accepted = roots.exist & (is_lesser | (range.greater & is_beyond(roots.greater, range.t_min)));
+    var inside = !is_lesser;
+    if SKIP_SELF {
         // The outside of a convex surface is never met again.
-        let t = distance_of(exit_root(own, direction_of(ray), sphere));
-        return Root(own.inside && is_beyond(t, range.t_min) && is_nearer(t, range.t_max), t, true);
+        let is_own = own.shape == body.shape.index;
+        let exit = distance_of(exit_root(own, direction_of(ray), body));
+        t = either(t, exit, is_own);
+        is_accepted = select(is_accepted, own.inside & is_beyond(exit, range.t_min), is_own);
+        inside |= is_own;
     }
-    let roots = roots(ray, sphere);
-    if is_beyond(roots.lesser, range.t_min) {
-        return Root(roots.exist && is_nearer(roots.lesser, range.t_max), roots.lesser, false);
-    }
-    let is_within = is_beyond(roots.greater, range.t_min) && is_nearer(roots.greater, range.t_max);
-    return Root(roots.exist && range.greater && is_within, roots.greater, true);
+    return Root(is_accepted & is_nearer(t, range.t_max), t, inside);
 }
 
 fn no_hit() -> Hit {
     return Hit(false, distance_of(FAR), 0u, false);
 }
 
+// The second where `is_second`, else the first.
+fn nearer_hit(first: Hit, second: Hit, is_second: bool) -> Hit {
+    return Hit(
+        select(first.found, second.found, is_second),
+        either(first.t, second.t, is_second),
+        select(first.sphere, second.sphere, is_second),
+        select(first.inside, second.inside, is_second),
+    );
+}
+
 // Whether a root that counts lies beyond t_min and before t = 1.
-fn blocks(ray: Ray, sphere: u32, own: Own) -> bool {
-    let t_min = params.shadow_t_min;
-    if SKIP_SELF && own.shape == shapes[sphere].index {
-        let t = exit_root(own, direction_of(ray), sphere);
-        return own.inside && t > t_min && t < real(1.0);
+fn blocks(ray: Ray, body: Body, own: Own, t_min: real) -> bool {
+    var is_blocked = root_between(ray, body, t_min);
+    if SKIP_SELF {
+        let t = exit_root(own, direction_of(ray), body);
+        is_blocked = select(is_blocked, own.inside & (t > t_min) & (t < real(1.0)), own.shape == body.shape.index);
     }
-    return root_between(ray, sphere, t_min);
+    return is_blocked;
 }

@@ -4,6 +4,15 @@
 // the ray to the centre, the roots as a stable pair (Haines, Gunther, Akenine-Moller, "Precision Improvements for Ray/Sphere
 // Intersection", Ray Tracing Gems, chapter 7).
 
+// A sphere as this kernel reads it.
+struct Body {
+    shape: Shape,
+}
+
+fn body_of(sphere: u32) -> Body {
+    return Body(shape_of(sphere));
+}
+
 // A ray's closest approach to a sphere's centre, in the sphere's object space.
 struct Approach {
     // S': origin minus centre.
@@ -20,8 +29,8 @@ struct Approach {
     discriminant: real,
 }
 
-fn approach(ray: Ray, sphere: u32) -> Approach {
-    let shape = shapes[sphere];
+fn approach(ray: Ray, body: Body) -> Approach {
+    let shape = body.shape;
     let from_center = difference(ray.origin, shape.center_radius.xyz);
     var origin = from_center.hi;
     var origin_low = from_center.lo;
@@ -52,40 +61,36 @@ struct Roots {
     greater: Distance,
 }
 
-fn roots(ray: Ray, sphere: u32) -> Roots {
-    let at = approach(ray, sphere);
-    let radius = shapes[sphere].center_radius.w;
+fn roots(ray: Ray, body: Body) -> Roots {
+    let at = approach(ray, body);
+    let radius = body.shape.center_radius.w;
     let hits = at.discriminant >= real(0.0);
     let root = sqrt(at.a * at.discriminant);
     let c = dot(at.origin, at.origin) - radius * radius;
-    if at.b >= real(0.0) {
-        let q = at.b + root;
-        return Roots(hits, c / q, q / at.a);
-    }
-    let q = at.b - root;
-    return Roots(hits, q / at.a, c / q);
+    let is_ahead = at.b >= real(0.0);
+    let q = at.b + select(-root, root, is_ahead);
+    let stable = c / q;
+    let other = q / at.a;
+    return Roots(hits, select(other, stable, is_ahead), select(stable, other, is_ahead));
 }
 
 // Whether a root lies beyond t_min and before t = 1: from where both ends lie, without a square root.
-fn root_between(ray: Ray, sphere: u32, t_min: real) -> bool {
-    let at = approach(ray, sphere);
-    let radius = shapes[sphere].center_radius.w;
+fn root_between(ray: Ray, body: Body, t_min: real) -> bool {
+    let at = approach(ray, body);
+    let radius = body.shape.center_radius.w;
     let start = at.origin + at.direction * t_min;
     let end = at.origin + at.direction;
     let end_squared = dot(end, end);
     let starts_outside = dot(start, start) > radius * radius;
     let crosses = select(end_squared > radius * radius, end_squared < radius * radius, starts_outside);
     // An end on the very surface is not beyond it.
-    let passes = starts_outside && end_squared >= radius * radius && at.b > at.a * t_min && at.b < at.a;
-    return at.discriminant >= real(0.0) && (crosses || passes);
+    let passes = starts_outside & (end_squared >= radius * radius) & (at.b > at.a * t_min) & (at.b < at.a);
+    return (at.discriminant >= real(0.0)) & (crosses | passes);
 }
 
 // The hit in object space: from the closest approach half a chord back or forth, since S' + t c' would lose what distance costs.
-fn local_hit(ray: Ray, hit: Hit) -> vec3r {
-    let at = approach(ray, hit.sphere);
+fn local_hit(ray: Ray, body: Body, hit: Hit) -> vec3r {
+    let at = approach(ray, body);
     let half_chord = at.direction * sqrt(max(at.discriminant, real(0.0)) / at.a);
-    if hit.inside {
-        return at.perpendicular + half_chord;
-    }
-    return at.perpendicular - half_chord;
+    return at.perpendicular + select(-half_chord, half_chord, hit.inside);
 }

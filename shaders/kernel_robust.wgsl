@@ -7,6 +7,21 @@
 // A place in the world.
 alias Point = Pair3;
 
+// Whether a place carries what rounding took.
+const CARRIES_LOW: bool = true;
+
+fn high_of(place: Point) -> vec3r {
+    return place.hi;
+}
+
+fn low_of(place: Point) -> vec3r {
+    return place.lo;
+}
+
+fn point_from(high: vec3r, low: vec3r) -> Point {
+    return Point(high, low);
+}
+
 // origin + t direction; the direction need not be normalised.
 struct Ray {
     origin: Point,
@@ -26,10 +41,10 @@ fn ray_from(origin: Point, direction: vec3r) -> Ray {
 fn primary_ray(pixel: vec2<u32>) -> Ray {
     let column = pixel.x;
     let row = params.window_rows + pixel.y;
-    let low = arrayLength(&window) / 2u;
-    let sum = two_sum3(window[column].xyz, window[row].xyz);
+    let low = params.window_low;
+    let sum = two_sum3(window_at(column), window_at(row));
     // Where the sum cancels, the low parts may be the greater.
-    let direction = two_sum3(sum.hi, sum.lo + (window[low + column].xyz + window[low + row].xyz));
+    let direction = two_sum3(sum.hi, sum.lo + (window_at(low + column) + window_at(low + row)));
     return ray_with(Point(vec3r(), vec3r()), direction);
 }
 
@@ -40,6 +55,16 @@ fn ray_to_light(origin: Point, light: u32) -> Ray {
 
 fn direction_of(ray: Ray) -> vec3r {
     return ray.direction.hi;
+}
+
+// A sphere as this kernel reads it: rounded, and what rounding took.
+struct Body {
+    shape: Shape,
+    low: Shape,
+}
+
+fn body_of(sphere: u32) -> Body {
+    return Body(shape_of(sphere), low_shape_of(sphere));
 }
 
 // The ray in the sphere's object space.
@@ -56,9 +81,9 @@ struct Approach {
     discriminant: Pair,
 }
 
-fn approach(ray: Ray, sphere: u32) -> Approach {
-    let shape = shapes[sphere];
-    let low = shapes_low[sphere];
+fn approach(ray: Ray, body: Body) -> Approach {
+    let shape = body.shape;
+    let low = body.low;
     var origin = pair_difference3(ray.origin, Pair3(shape.center_radius.xyz, low.center_radius.xyz));
     var direction = ray.direction;
     if ELLIPSOIDS {
@@ -86,46 +111,42 @@ struct Roots {
     greater: Distance,
 }
 
-fn roots(ray: Ray, sphere: u32) -> Roots {
-    let at = approach(ray, sphere);
+fn roots(ray: Ray, body: Body) -> Roots {
+    let at = approach(ray, body);
     let hits = at.discriminant.hi >= 0.0;
     let root = square_root(at.discriminant);
-    if at.b.hi >= 0.0 {
-        let q = pair_sum(at.b, root);
-        return Roots(hits, quotient(at.c, q), quotient(q, at.a));
-    }
-    let q = pair_sum(at.b, Pair(-root.hi, -root.lo));
-    return Roots(hits, quotient(q, at.a), quotient(at.c, q));
+    let is_ahead = at.b.hi >= 0.0;
+    let q = pair_sum(at.b, Pair(select(-root.hi, root.hi, is_ahead), select(-root.lo, root.lo, is_ahead)));
+    let stable = quotient(at.c, q);
+    let other = quotient(q, at.a);
+    return Roots(hits, either(other, stable, is_ahead), either(stable, other, is_ahead));
 }
 
 // Whether a root lies beyond t_min and before t = 1.
-fn root_between(ray: Ray, sphere: u32, t_min: real) -> bool {
-    let at = roots(ray, sphere);
+fn root_between(ray: Ray, body: Body, t_min: real) -> bool {
+    let at = roots(ray, body);
     let end = distance_of(1.0);
     let lesser = is_beyond(at.lesser, t_min);
-    let greater = is_beyond(at.greater, t_min) && is_nearer(at.greater, end);
-    return at.exist && select(greater, is_nearer(at.lesser, end), lesser);
+    let greater = is_beyond(at.greater, t_min) & is_nearer(at.greater, end);
+    return at.exist & select(greater, is_nearer(at.lesser, end), lesser);
 }
 
 // The hit in object space: from the closest approach c' x (S' x c') / A half a chord back or forth.
-fn local_hit(ray: Ray, hit: Hit) -> vec3r {
-    let at = approach(ray, hit.sphere);
+fn local_hit(ray: Ray, body: Body, hit: Hit) -> vec3r {
+    let at = approach(ray, body);
     let perpendicular = cross(at.direction, at.moment) / at.a.hi;
     let half_chord = at.direction * (sqrt(max(at.discriminant.hi, 0.0)) / at.a.hi);
-    if hit.inside {
-        return perpendicular + half_chord;
-    }
-    return perpendicular - half_chord;
+    return perpendicular + select(-half_chord, half_chord, hit.inside);
 }
 
 // The place of a point of the sphere's surface, given in object space.
-fn place_of(sphere: u32, local: vec3r) -> Point {
+fn place_of(body: Body, scale: vec3r, local: vec3r) -> Point {
     var offset = local;
     if ELLIPSOIDS {
-        offset *= materials[sphere].scale;
+        offset *= scale;
     }
-    let place = two_sum3(shapes[sphere].center_radius.xyz, offset);
-    return fast_two_sum3(place.hi, place.lo + shapes_low[sphere].center_radius.xyz);
+    let place = two_sum3(body.shape.center_radius.xyz, offset);
+    return fast_two_sum3(place.hi, place.lo + body.low.center_radius.xyz);
 }
 
 // A place seen from a corner of the world, in f32.

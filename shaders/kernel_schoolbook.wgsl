@@ -1,6 +1,15 @@
 // Ray against sphere by the schoolbook: the discriminant as B^2 - A C, the roots as (-B -+ root)/A. The baseline of studies and
 // of `trueray stress`; no picture is made with it. The same functions as kernel_plain.wgsl.
 
+// A sphere as this kernel reads it.
+struct Body {
+    shape: Shape,
+}
+
+fn body_of(sphere: u32) -> Body {
+    return Body(shape_of(sphere));
+}
+
 // The quadratic in the sphere's object space.
 struct Approach {
     origin: vec3r,
@@ -10,8 +19,8 @@ struct Approach {
     discriminant: real,
 }
 
-fn approach(ray: Ray, sphere: u32) -> Approach {
-    let shape = shapes[sphere];
+fn approach(ray: Ray, body: Body) -> Approach {
+    let shape = body.shape;
     let origin = (ray.origin - shape.center_radius.xyz) * shape.inv_scale;
     let direction = ray.direction * shape.inv_scale;
     let a = dot(direction, direction);
@@ -27,22 +36,22 @@ struct Roots {
     greater: Distance,
 }
 
-fn roots(ray: Ray, sphere: u32) -> Roots {
-    let at = approach(ray, sphere);
+fn roots(ray: Ray, body: Body) -> Roots {
+    let at = approach(ray, body);
     let root = sqrt(at.discriminant);
     return Roots(at.discriminant >= real(0.0), (-at.b - root) / at.a, (-at.b + root) / at.a);
 }
 
 // Whether a root lies beyond t_min and before t = 1.
-fn root_between(ray: Ray, sphere: u32, t_min: real) -> bool {
-    let at = roots(ray, sphere);
+fn root_between(ray: Ray, body: Body, t_min: real) -> bool {
+    let at = roots(ray, body);
     let lesser = at.lesser > t_min && at.lesser < real(1.0);
     let greater = at.lesser <= t_min && at.greater > t_min && at.greater < real(1.0);
     return at.exist && (lesser || greater);
 }
 
 // The hit in object space.
-fn local_hit(ray: Ray, hit: Hit) -> vec3r {
-    let at = approach(ray, hit.sphere);
+fn local_hit(ray: Ray, body: Body, hit: Hit) -> vec3r {
+    let at = approach(ray, body);
     return at.origin + at.direction * hit.t;
 }

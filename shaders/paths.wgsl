@@ -1,21 +1,27 @@
 // A sample's way from bounce to bounce; read it beside src/cpu/trace.rs.
 
-// A sample's reflection ray and what it has gathered so far.
-struct Path {
-    origin: Point,
-    direction: vec3r,
-    throughput: real,
-    color: vec3r,
-    // Index of the sample's result.
-    slot: u32,
-    // With SKIP_SELF, the start of the ray in the object space of the sphere that it leaves.
-    local: vec3r,
-    // Shape index of that sphere, and in the highest bit whether the ray starts on the inner wall.
-    own: u32,
-}
+// Paths are samples' reflection rays and what they have gathered so far: those of this bounce, and those of the next. In textures,
+// which are the faster to read: see many.wgsl. Each path has VECTORS vectors:
+//   the start of its ray, and the throughput;
+//   the direction, and the index of the sample's result, which is below 2^24;
+//   the colour gathered, and the shape index, below 2^24, of the sphere that the ray leaves;
+//   with SKIP_SELF the start in the object space of that sphere, and 1 where it is on the inner wall;
+//   for the tiers that carry it, what rounding took from the start.
+@group(0) @binding(11) var paths: texture_2d<u32>;
+@group(0) @binding(18) var next_paths: texture_storage_2d<rgba32uint, write>;
 
-// Those of this bounce, and those of the next.
-@group(0) @binding(11) var<storage, read_write> paths: array<Path>;
+// Vectors of a path: as path_vectors in src/gpu/pipeline.rs has it.
+override VECTORS: u32;
+
+// Whether there is a next bounce: 0 or 1.
+@group(0) @binding(19) var<uniform> has_next: u32;
+
+// Keeps a vector of a path of the next bounce.
+fn keep(index: u32, v: vec4r) {
+    for (var part = 0u; part < TEXELS; part++) {
+        textureStore(next_paths, texel(index * TEXELS + part), texel_of(v, part));
+    }
+}
 
 // The path goes on along the mirrored ray.
 fn reflect(surface: Surface, color: vec3r, throughput: real, slot: u32) {
@@ -23,77 +29,65 @@ fn reflect(surface: Surface, color: vec3r, throughput: real, slot: u32) {
         reflection_rays++;
     }
     let ray = reflection_ray(surface);
-    let at = stage.next_first + atomicAdd(&stage.next_path_count, 1u);
-    paths[at].origin = ray.origin;
-    paths[at].direction = direction_of(ray);
-    paths[at].throughput = throughput;
-    paths[at].color = color;
-    paths[at].slot = slot;
+    let at = atomicAdd(&stage.next_path_count, 1u) * VECTORS;
+    keep(at, vec4r(high_of(ray.origin), throughput));
+    keep(at + 1u, vec4r(direction_of(ray), real(slot)));
+    keep(at + 2u, vec4r(color, real(surface.own.shape)));
     if SKIP_SELF {
-        paths[at].local = surface.own.local;
-        paths[at].own = surface.own.shape | select(0u, INSIDE, surface.own.inside);
+        keep(at + 3u, vec4r(surface.own.local, select(real(0.0), real(1.0), surface.own.inside)));
+    }
+    if CARRIES_LOW {
+        keep(at + VECTORS - 1u, vec4r(low_of(ray.origin), real(0.0)));
     }
 }
 
-// The ray of a path.
-fn ray_of(path: u32) -> Ray {
-    return ray_from(paths[path].origin, paths[path].direction);
+// What a ray has found: its colour is added to what the sample has gathered, and the path goes on if it is mirrored.
+fn shade(ray: Ray, hit: Hit, is_path: bool, slot: u32, before: vec3r, throughput: real) {
+    let material = material_of(hit.sphere);
+    let surface = surface_at(ray, hit, material);
+    let color = select(before, before + local_color(surface, material, hit.found) * throughput, hit.found);
+    var goes_on = false;
+    if REFLECTIONS {
+        goes_on = hit.found & (material.kr != real(0.0)) & (has_next != 0u);
+        if goes_on {
+            reflect(surface, color, min(throughput * material.kr, MAX_THROUGHPUT), slot);
+        }
+    }
+    if is_path {
+        if !goes_on {
+            finish(slot, color);
+        }
+        add_counts(slot);
+    }
+}
+
+// From the hit of a primary ray on.
+fn follow(ray: Ray, hit: Hit, slot: u32) {
+    begin_counts(slot);
+    // What hits nothing shows the background; a reflection ray that hits nothing adds black.
+    shade(ray, hit, true, slot, select(params.background, vec3r(), hit.found), real(1.0));
 }
 
 // One bounce of each path.
 @compute @workgroup_size(64)
 fn walk_paths(@builtin(global_invocation_id) id: vec3<u32>) {
-    if id.x >= stage.path_count {
-        return;
-    }
-    let path = stage.first + id.x;
+    let count = stage.path_count;
+    let is_path = id.x < count;
+    let at = min(id.x, count - 1u) * VECTORS;
+    let start = vector_at(paths, at);
+    let way = vector_at(paths, at + 1u);
+    let gathered = vector_at(paths, at + 2u);
     var own = Own(NO_SHAPE, false, vec3r());
     if SKIP_SELF {
-        own = Own(paths[path].own & ~INSIDE, (paths[path].own & INSIDE) != 0u, paths[path].local);
+        let local = vector_at(paths, at + 3u);
+        own = Own(u32(gathered.w), local.w != real(0.0), local.xyz);
     }
-    let hit = nearest_secondary(ray_of(path), own, reflection_range());
-    if hit.found {
-        keep_hit(path, hit);
-    } else {
-        // A reflection ray that hits nothing adds black.
-        finish(paths[path].slot, paths[path].color);
+    var low = vec3r();
+    if CARRIES_LOW {
+        low = vector_at(paths, at + VECTORS - 1u).xyz;
     }
-}
-
-// The colour of each hit, and the path that it begins or goes on.
-@compute @workgroup_size(64)
-fn shade_hits(@builtin(global_invocation_id) id: vec3<u32>) {
-    if id.x >= stage.hit_count {
-        return;
-    }
-    shadow_rays = 0u;
-    reflection_rays = 0u;
-    let at = stage.hits[id.x];
-    let hit = Hit(true, distance_of(real(0.0)), at.y & ~INSIDE, (at.y & INSIDE) != 0u);
-    var ray: Ray;
-    var slot = at.x;
-    var color = vec3r();
-    var throughput = real(1.0);
-    if stage.bounce == 0u {
-        ray = ray_through(slot);
-    } else {
-        ray = ray_of(at.x);
-        slot = paths[at.x].slot;
-        color = paths[at.x].color;
-        throughput = paths[at.x].throughput;
-    }
-    let surface = surface_at(ray, hit);
-    color += local_color(surface) * throughput;
-    var goes_on = false;
-    if REFLECTIONS {
-        let kr = materials[surface.sphere].kr;
-        goes_on = kr != real(0.0) && stage.bounce < params.max_depth;
-        if goes_on {
-            reflect(surface, color, min(throughput * kr, MAX_THROUGHPUT), slot);
-        }
-    }
-    if !goes_on {
-        finish(slot, color);
-    }
-    add_counts(slot);
+    let ray = ray_from(point_from(start.xyz, low), way.xyz);
+    var hit = nearest_secondary(ray, own, reflection_range());
+    hit.found &= is_path;
+    shade(ray, hit, is_path, u32(way.w), gathered.xyz, start.w);
 }

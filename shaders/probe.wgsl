@@ -54,7 +54,7 @@ fn probe_nearest(@builtin(global_invocation_id) id: vec3<u32>) {
 // Whether something stands between the origin and t = 1.
 @compute @workgroup_size(64)
 fn probe_blocked(@builtin(global_invocation_id) id: vec3<u32>) {
-    let blocked = any_hit(probe_ray(id.x), probe_own(probe_words[id.x]), 0u);
+    let blocked = any_hit(probe_ray(id.x), probe_own(probe_words[id.x]), 0u, true);
     probe_flags[id.x] = vec2<u32>(select(0u, PROBE_BLOCKED, blocked), 0u);
     probe_values[id.x] = real(0.0);
 }
@@ -67,11 +67,11 @@ fn probe_lit(@builtin(global_invocation_id) id: vec3<u32>) {
     var bits = hit_bits(hit);
     var n_dot_l = real(0.0);
     if hit.found {
-        let surface = surface_at(ray, hit);
+        let surface = surface_at(ray, hit, material_of(hit.sphere));
         let shadow_ray = ray_to_light(surface.position, id.x);
         n_dot_l = dot(surface.normal, direction_of(shadow_ray) * (real(1.0) / sqrt(shadow_ray.a)));
         bits |= select(0u, PROBE_FACING, n_dot_l > real(0.0));
-        bits |= select(0u, PROBE_BLOCKED, any_hit(shadow_ray, surface.own, id.x));
+        bits |= select(0u, PROBE_BLOCKED, any_hit(shadow_ray, surface.own, id.x, true));
     }
     probe_flags[id.x] = vec2<u32>(bits, hit.sphere);
     probe_values[id.x] = n_dot_l;
@@ -85,7 +85,7 @@ fn probe_bounce(@builtin(global_invocation_id) id: vec3<u32>) {
     var ray = probe_ray(id.x);
     var hit = nearest_hit(ray, own, reflection_range());
     for (var bounce = 0u; bounce < words.z && hit.found; bounce++) {
-        let surface = surface_at(ray, hit);
+        let surface = surface_at(ray, hit, material_of(hit.sphere));
         ray = reflection_ray(surface);
         own = surface.own;
         hit = nearest_hit(ray, own, reflection_range());
@@ -102,7 +102,7 @@ fn probe_refract(@builtin(global_invocation_id) id: vec3<u32>) {
     var ray = probe_ray(id.x);
     var hit = nearest_hit(ray, own, reflection_range());
     for (var bounce = 0u; bounce < words.z && hit.found; bounce++) {
-        let refracted = refraction_ray(ray, surface_at(ray, hit));
+        let refracted = refraction_ray(ray, surface_at(ray, hit, material_of(hit.sphere)));
         ray = refracted.ray;
         own = refracted.own;
         hit = nearest_hit(ray, own, refraction_range());

@@ -3,6 +3,21 @@
 // A place in the world.
 alias Point = vec3r;
 
+// Whether a place carries what rounding took.
+const CARRIES_LOW: bool = false;
+
+fn high_of(place: Point) -> vec3r {
+    return place;
+}
+
+fn low_of(place: Point) -> vec3r {
+    return vec3r();
+}
+
+fn point_from(high: vec3r, low: vec3r) -> Point {
+    return high;
+}
+
 // origin + t direction; the direction need not be normalised.
 struct Ray {
     origin: Point,
@@ -18,7 +33,7 @@ fn ray_from(origin: Point, direction: vec3r) -> Ray {
 }
 
 fn primary_ray(pixel: vec2<u32>) -> Ray {
-    return ray_from(vec3r(), window[pixel.x].xyz + window[params.window_rows + pixel.y].xyz);
+    return ray_from(vec3r(), window_at(pixel.x) + window_at(params.window_rows + pixel.y));
 }
 
 // From a point to a light, which lies at t = 1.
@@ -31,11 +46,11 @@ fn direction_of(ray: Ray) -> vec3r {
 }
 
 // The place of a point of the sphere's surface, given in object space.
-fn place_of(sphere: u32, local: vec3r) -> Point {
+fn place_of(body: Body, scale: vec3r, local: vec3r) -> Point {
     if ELLIPSOIDS {
-        return shapes[sphere].center_radius.xyz + local * materials[sphere].scale;
+        return body.shape.center_radius.xyz + local * scale;
     }
-    return shapes[sphere].center_radius.xyz + local;
+    return body.shape.center_radius.xyz + local;
 }
 
 // A place seen from a corner of the world, in f32.

@@ -8,6 +8,28 @@ alias vec4r = vec4<f32>;
 // Greater roots, infinity and NaN are never a hit.
 const FAR: real = 3e38;
 
+// The place of a texel of a texture that stands for a buffer; rows have 2^12: ROW in src/gpu/upload.rs.
+fn texel(index: u32) -> vec2<u32> {
+    return vec2<u32>(index & 4095u, index >> 12u);
+}
+
+// The numbers with this index in a texture, four to a vector.
+fn vector_at(table: texture_2d<u32>, index: u32) -> vec4r {
+    return bitcast<vec4<f32>>(textureLoad(table, texel(index), 0));
+}
+
+// Texels of a vector, and each of them.
+const TEXELS: u32 = 1u;
+
+fn texel_of(v: vec4r, part: u32) -> vec4<u32> {
+    return bitcast<vec4<u32>>(v);
+}
+
+// What stands in place of the fourth number, if that is a u32.
+fn bits_at(table: texture_2d<u32>, index: u32) -> u32 {
+    return textureLoad(table, texel(index), 0).w;
+}
+
 fn is_finite(x: real) -> bool {
     // By the bits: comparisons with NaN may be folded away.
     return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
@@ -39,31 +61,23 @@ fn along(origin: vec3r, direction: vec3r, t: real) -> vec3r {
 // e^x for x <= 0: x = k ln 2 + r, |r| <= ln 2 / 2, ln 2 in two parts (Cody, Waite, "Software Manual for the Elementary
 // Functions", 1980), then the Taylor series of e^r to r^7 / 7!, which leaves 6e-9.
 fn exponential(x: real) -> real {
-    if !(x > -87.0) {
-        return 0.0;
-    }
     let k = floor(x * 1.442695 + 0.5);
     let r = (x - k * 0.693359375) + k * 2.12194440e-4;
     let series = 1.0 / 24.0 + r * (1.0 / 120.0 + r * (1.0 / 720.0 + r * (1.0 / 5040.0)));
     let power = 1.0 + (r + r * r * (1.0 / 2.0 + r * (1.0 / 6.0 + r * series)));
-    return power * bitcast<f32>(u32(i32(k) + 127) << 23u);
+    return select(0.0, power * bitcast<f32>(u32(i32(k) + 127) << 23u), x > -87.0);
 }
 
 // ln(1 - d) for d in [0, 1). 1 - d = 2^k m with m in [0.7, 1.4], ln m = 2 atanh(s), s = (m - 1)/(m + 1); for small d
 // s = -d / (2 - d) without rounding 1 - d. The series of atanh to s^9 leaves 3e-9.
 fn log1m(d: real) -> real {
-    var s = -d / (2.0 - d);
-    var k = 0;
-    if d > 0.3 {
-        let bits = bitcast<u32>(1.0 - d);
-        k = i32(bits >> 23u) - 127;
-        var m = bitcast<f32>((bits & 0x007fffffu) | 0x3f800000u);
-        if m > 1.4 {
-            m *= 0.5;
-            k += 1;
-        }
-        s = (m - 1.0) / (m + 1.0);
-    }
+    let bits = bitcast<u32>(1.0 - d);
+    let mantissa = bitcast<f32>((bits & 0x007fffffu) | 0x3f800000u);
+    let is_high = mantissa > 1.4;
+    let m = select(mantissa, mantissa * 0.5, is_high);
+    let is_large = d > 0.3;
+    let k = select(0, i32(bits >> 23u) - 127 + i32(is_high), is_large);
+    let s = select(-d, m - 1.0, is_large) / select(2.0 - d, m + 1.0, is_large);
     let s2 = s * s;
     let sum = s2 * (1.0 / 3.0 + s2 * (1.0 / 5.0 + s2 * (1.0 / 7.0 + s2 * (1.0 / 9.0))));
     return 2.0 * (s + s * sum) + f32(k) * 0.69314718;

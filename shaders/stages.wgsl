@@ -1,60 +1,45 @@
-// A picture in stages, each over those alone that need it: see_tiles, shade_hits, then walk_paths and shade_hits for each bounce.
-// So no lane shades what hit nothing, or waits for its neighbours' reflections. The latter stages are in paths.wgsl, or where
-// something refracts in trees.wgsl.
+// A picture in stages, each over those alone that need it: see_tiles, then walk_paths for each bounce, which is in paths.wgsl.
+//
+// All lanes of a workgroup go the same way, whether they see something or not: software devices execute both sides of a branch
+// anyway.
 
-// How far a picture is; stage.wgsl goes from one stage to the next.
+// How many paths there are; stage.wgsl goes from one bounce to the next.
 struct Stage {
-    // Where in `paths` those of this bounce begin, and those of the next.
-    first: u32,
-    next_first: u32,
     // Paths of this bounce, and so far of the next.
     path_count: u32,
     next_path_count: atomic<u32>,
-    // Hits of this bounce.
-    hit_count: u32,
-    next_hit_count: atomic<u32>,
-    // Bounces of the paths of this one.
-    bounce: u32,
-    // Of each hit: the path, or the slot of a primary ray; then the sphere, with INSIDE.
-    hits: array<vec2<u32>>,
 }
 
 @group(0) @binding(12) var<storage, read_write> stage: Stage;
 
-// In the highest bit: seen from inside, or starts on the inner wall.
-const INSIDE: u32 = 0x80000000u;
+// Tiles that a sphere may cover, column and row in 16 bits each. The length is a quarter of MAX_DISPATCH_TILES of
+// src/gpu/render.rs.
+@group(0) @binding(6) var<uniform> tiles: array<vec4<u32>, 4096>;
 
-fn keep_hit(path: u32, hit: Hit) {
-    let at = atomicAdd(&stage.next_hit_count, 1u);
-    stage.hits[at] = vec2<u32>(path, hit.sphere | select(0u, INSIDE, hit.inside));
+// One sample of one pixel: its primary ray, and what follows from it.
+fn see(tile: vec2<u32>, index: u32, first_slot: u32, sample: u32) {
+    let pixel = tile + vec2(index % 8u, index / 8u);
+    let ray = primary_ray(pixel * SAMPLES + vec2(sample % SAMPLES, sample / SAMPLES));
+    follow(ray, nearest_seen(ray, tile), first_slot + sample);
 }
 
-// The primary ray of a slot: samples row by row in the pixels of a tile, these row by row.
-fn ray_through(slot: u32) -> Ray {
-    let in_tile = (slot / (SAMPLES * SAMPLES)) % 64u;
-    let sample = slot % (SAMPLES * SAMPLES);
-    let pixel = tiles[slot / (64u * SAMPLES * SAMPLES)] + vec2(in_tile % 8u, in_tile / 8u);
-    return primary_ray(pixel * SAMPLES + vec2(sample % SAMPLES, sample / SAMPLES));
-}
-
-// One workgroup casts the primary rays of one tile.
+// One workgroup casts the primary rays of one tile and shades what they hit: samples row by row in the pixels of a tile, these
+// row by row.
 @compute @workgroup_size(64)
 fn see_tiles(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) index: u32) {
+    let packed_tile = tiles[group.x / 4u][group.x % 4u];
+    let tile = vec2(packed_tile & 0xffffu, packed_tile >> 16u) * 8u;
     let first_slot = (group.x * 64u + index) * SAMPLES * SAMPLES;
-    var slot = first_slot;
-    loop {
-        let hit = nearest_seen(ray_through(slot), tiles[group.x]);
-        if hit.found {
-            keep_hit(slot, hit);
-        } else {
-            finish(slot, params.background);
-        }
-        if COUNT_RAYS {
-            ray_counts[slot] = 0u;
-        }
-        slot++;
-        if slot == first_slot + SAMPLES * SAMPLES {
-            break;
+    if SAMPLES == 1u {
+        see(tile, index, first_slot, 0u);
+    } else {
+        var sample = 0u;
+        loop {
+            see(tile, index, first_slot, sample);
+            sample++;
+            if sample == SAMPLES * SAMPLES {
+                break;
+            }
         }
     }
 }

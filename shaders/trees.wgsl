@@ -34,12 +34,13 @@ fn tree_color(primary: Ray, seen: Hit) -> vec3r {
         }
         is_primary = false;
         if hit.found {
-            var surface = surface_at(ray, hit);
+            let material = material_of(hit.sphere);
+            var surface = surface_at(ray, hit, material);
             let wall = surface.own;
             if !SKIP_SELF_ALWAYS {
                 surface.own.shape = NO_SHAPE;
             }
-            color += local_color(surface) * throughput;
+            color += local_color(surface, material, true) * throughput;
 
             if depth < params.max_depth {
                 let kt = glasses[surface.sphere].kt;
@@ -51,10 +52,9 @@ fn tree_color(primary: Ray, seen: Hit) -> vec3r {
                     waiting[count] = Waiting(refracted.ray, refracted.own, weight, depth + 1u);
                     count++;
                 }
-                let kr = materials[surface.sphere].kr;
-                if REFLECTIONS && kr != real(0.0) {
+                if REFLECTIONS && material.kr != real(0.0) {
                     depth += 1u;
-                    throughput = min(throughput * kr, MAX_THROUGHPUT);
+                    throughput = min(throughput * material.kr, MAX_THROUGHPUT);
                     ray = reflection_ray(surface);
                     own = surface.own;
                     range = reflection_range();
@@ -85,16 +85,13 @@ fn tree_color(primary: Ray, seen: Hit) -> vec3r {
     return color;
 }
 
-// The colour of each primary hit and all that follows.
-@compute @workgroup_size(64)
-fn shade_hits(@builtin(global_invocation_id) id: vec3<u32>) {
-    if id.x >= stage.hit_count {
-        return;
+// The colour of a primary ray with this hit.
+fn follow(ray: Ray, hit: Hit, slot: u32) {
+    begin_counts(slot);
+    if hit.found {
+        finish(slot, tree_color(ray, hit));
+    } else {
+        finish(slot, params.background);
     }
-    shadow_rays = 0u;
-    reflection_rays = 0u;
-    let at = stage.hits[id.x];
-    let hit = Hit(true, distance_of(real(0.0)), at.y & ~INSIDE, (at.y & INSIDE) != 0u);
-    finish(at.x, tree_color(ray_through(at.x), hit));
-    add_counts(at.x);
+    add_counts(slot);
 }

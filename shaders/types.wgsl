@@ -24,9 +24,10 @@ struct Params {
     screen_across: u32,
     // Number of cells along each axis.
     grid_cells: vec3<u32>,
-    // Where in `lists` the offsets of the grid's cells begin; those of the tiles are first.
-    grid_offsets: u32,
-    sphere_count: u32,
+    // Where in `cells` those of the grid begin; those of the tiles are first.
+    grid_first: u32,
+    // Where in `window` begins what rounding took from the columns and then the rows.
+    window_low: u32,
     light_count: u32,
     max_depth: u32,
     // 0, which no compiler knows: see barrier() in eft.wgsl.
@@ -47,12 +48,12 @@ struct Shape {
 struct Material {
     color: vec3r,
     ka: real,
-    // Object to world space.
-    scale: vec3r,
     kd: real,
     ks: real,
     kr: real,
     n: real,
+    // Object to world space.
+    scale: vec3r,
 }
 
 struct Light {
@@ -60,11 +61,5 @@ struct Light {
     intensity: vec3r,
 }
 
-// Bindings 1 and 3, and their low parts 9 and 10, shapes and lights, are in few.wgsl or in many.wgsl and lights_*.wgsl.
+// Spheres, lights, lists and the window are bound in many.wgsl and lights_*.wgsl, or in ranges.wgsl.
 @group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(2) var<storage, read> materials: array<Material>;
-// What each column of samples and then each row gives to the direction of its rays; for the tiers that carry it, what rounding took
-// from each follows in the second half.
-@group(0) @binding(4) var<storage, read> window: array<vec4r>;
-// Top-left pixel of each tile that a sphere may cover.
-@group(0) @binding(6) var<storage, read> tiles: array<vec2<u32>>;

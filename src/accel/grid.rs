@@ -1,6 +1,6 @@
 //! A uniform grid for rays that share nothing: reflections.
 
-use glam::{DVec3, IVec3, UVec3};
+use glam::{DVec3, UVec3};
 use rayon::prelude::*;
 
 use super::bounds::{Enclosure, Rounding, Solid};
@@ -92,7 +92,7 @@ impl Grid {
 
 /// How many cells there are for each sphere: where the spheres are few, finer cells are cheap.
 fn cells_per_sphere(spheres: usize) -> f64 {
-    if spheres < 50_000 { 3.0 } else { 1.0 }
+    if spheres < 200_000 { 3.0 } else { 1.5 }
 }
 
 /// The few spheres that are far larger than the typical one.
@@ -202,42 +202,42 @@ impl Step {
 }
 
 /// A ray's way through the cells (Amanatides, Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing", 1987); read it beside
-/// `shaders/lists.wgsl`.
+/// `shaders/grid.wgsl`.
 #[derive(Debug, Clone)]
 pub struct Walk {
     /// In cells.
     origin: DVec3,
     /// t for each cell's width.
     inverse: DVec3,
-    cells: IVec3,
-    cell: IVec3,
-    step: IVec3,
-    /// t at which the ray leaves the cell along each axis.
-    next: DVec3,
+    /// t at which the ray leaves the grid; before 0 where it misses it.
+    leave: f64,
+    step: DVec3,
+    /// What a step along each axis adds to the index of the cell.
+    strides: [isize; 3],
+    /// Where the ray leaves the cell along each axis.
+    wall: DVec3,
+    cell: isize,
     inside: bool,
 }
 
 impl Walk {
     fn new(grid: &Grid, origin: DVec3, direction: DVec3) -> Self {
-        let cells = grid.cells.as_ivec3();
+        let size = grid.cells.as_dvec3();
         let origin = (origin - grid.low) * grid.per_unit;
         let direction = direction * grid.per_unit;
         // A direction along a plane never leaves it.
         let inverse = DVec3::from_array(direction.to_array().map(|d| if d.abs() < 1e-30 { 1e38 } else { 1.0 / d }));
-        let ends = [-origin * inverse, (cells.as_dvec3() - origin) * inverse];
+        let ends = [-origin * inverse, (size - origin) * inverse];
         let enter = ends[0].min(ends[1]).max_element().max(0.0);
-        let inside = enter <= ends[0].max(ends[1]).min_element();
-        let first = (origin + direction * enter).floor().clamp(DVec3::ZERO, cells.as_dvec3() - DVec3::ONE);
-        let step = IVec3::select(inverse.cmpge(DVec3::ZERO), IVec3::ONE, IVec3::NEG_ONE);
-        let mut walk = Self { origin, inverse, cells, cell: first.as_ivec3(), step, next: DVec3::ZERO, inside };
-        walk.next = walk.exits();
-        walk
-    }
-
-    /// t at which the ray leaves the cell along each axis: from the place of the wall, since a sum would drift.
-    fn exits(&self) -> DVec3 {
-        let wall = self.cell + self.step.max(IVec3::ZERO);
-        (wall.as_dvec3() - self.origin) * self.inverse
+        let leave = ends[0].max(ends[1]).min_element();
+        let inside = enter <= leave;
+        let place = (origin + direction * enter).floor().clamp(DVec3::ZERO, size - DVec3::ONE);
+        let is_ahead = inverse.cmpge(DVec3::ZERO);
+        let step = DVec3::select(is_ahead, DVec3::ONE, DVec3::NEG_ONE);
+        let strides = [1, grid.cells.x as isize, (grid.cells.x * grid.cells.y) as isize];
+        let cell = (0..3).map(|axis| place[axis] as isize * strides[axis]).sum();
+        let strides = std::array::from_fn(|axis| strides[axis] * step[axis] as isize);
+        Self { origin, inverse, leave, step, strides, wall: place + step.max(DVec3::ZERO), cell, inside }
     }
 }
 
@@ -248,15 +248,17 @@ impl Iterator for Walk {
         if !self.inside {
             return None;
         }
-        let IVec3 { x, y, z } = self.cell;
-        let cell = ((z * self.cells.y + y) * self.cells.x + x) as usize;
-        let DVec3 { x, y, z } = self.next;
+        let cell = self.cell as usize;
+        // From the place of the wall, since a sum would drift.
+        let next = (self.wall - self.origin) * self.inverse;
+        let DVec3 { x, y, z } = next;
         // Whatever the comparisons say, of NaN even, one axis is taken, so that the walk ends.
         let axis = if x <= y && x <= z { 0 } else { 1 + usize::from(!(y <= z)) };
-        let exit = self.next[axis];
-        self.cell[axis] += self.step[axis];
-        self.inside = (0..self.cells[axis]).contains(&self.cell[axis]);
-        self.next = self.exits();
+        let exit = next[axis];
+        // `leave` is of the last walls, by the very same operations.
+        self.inside = exit < self.leave;
+        self.wall[axis] += self.step[axis];
+        self.cell += self.strides[axis];
         Some(Step { cell, exit })
     }
 }

@@ -4,8 +4,11 @@ use wgpu::util::DeviceExt;
 
 use super::device::Gpu;
 use super::error::Error;
+use super::pack::Contents;
+use super::pipeline::Resource;
 use super::readable::Readable;
 use super::shader::Module;
+use super::upload::texels;
 
 /// How a kernel reads an input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -14,6 +17,8 @@ pub(super) enum Space {
     Uniform,
     /// `var<storage, read>`.
     Storage,
+    /// A texture of four `u32` a texel.
+    Texels,
 }
 
 /// A kernel with its buffers; the module has one entry point.
@@ -46,21 +51,22 @@ impl Job<'_> {
                 cache: None,
             });
             let results = Readable::new(gpu, self.output_len as u64);
-            let mut buffers = vec![(self.output, results.buffer.clone())];
+            let mut resources = vec![(self.output, Resource::Buffer(results.buffer.clone()))];
             for &(binding, space, contents) in self.inputs {
-                let usage = match space {
-                    Space::Uniform => wgpu::BufferUsages::UNIFORM,
-                    Space::Storage => wgpu::BufferUsages::STORAGE,
+                let buffer = |usage| {
+                    let descriptor = wgpu::util::BufferInitDescriptor { label: None, contents, usage };
+                    Resource::Buffer(device.create_buffer_init(&descriptor))
                 };
-                let descriptor = wgpu::util::BufferInitDescriptor { label: None, contents, usage };
-                buffers.push((binding, device.create_buffer_init(&descriptor)));
+                let resource = match space {
+                    Space::Uniform => buffer(wgpu::BufferUsages::UNIFORM),
+                    Space::Storage => buffer(wgpu::BufferUsages::STORAGE),
+                    Space::Texels => Resource::Texels(texels(gpu, &Contents::packed(contents), 4)),
+                };
+                resources.push((binding, resource));
             }
-            let entries: Vec<_> = buffers
+            let entries: Vec<_> = resources
                 .iter()
-                .map(|(binding, buffer)| wgpu::BindGroupEntry {
-                    binding: *binding,
-                    resource: buffer.as_entire_binding(),
-                })
+                .map(|(binding, resource)| wgpu::BindGroupEntry { binding: *binding, resource: resource.as_binding() })
                 .collect();
             let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: None,

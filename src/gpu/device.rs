@@ -3,6 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
 
 use serde::Serialize;
 
@@ -55,7 +56,7 @@ pub struct DeviceInfo {
     pub driver: String,
     /// PCI id such as `0000:01:00.0`; empty for devices without one.
     pub pci: String,
-    /// Whether shaders can calculate in `f64`.
+    /// Whether shaders can calculate in `f64`, and read it from textures as pairs of integers.
     pub f64: bool,
     /// Greatest size of one storage buffer binding, in bytes.
     pub max_storage_binding: u64,
@@ -83,7 +84,7 @@ impl DeviceInfo {
             },
             driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
             pci: info.device_pci_bus_id,
-            f64: adapter.features().contains(wgpu::Features::SHADER_F64),
+            f64: adapter.features().contains(wgpu::Features::SHADER_F64 | wgpu::Features::SHADER_INT64),
             max_storage_binding: limits.max_storage_buffer_binding_size,
             max_buffer: limits.max_buffer_size,
             max_workgroups: limits.max_compute_workgroups_per_dimension,
@@ -123,10 +124,17 @@ pub struct Gpu {
     pub(super) queue: wgpu::Queue,
     /// Whether host and device share memory, so that a storage buffer can be mapped.
     pub(super) mappable: bool,
+    /// About how long a dispatch should take.
+    pub(super) pace: Duration,
     failure: Arc<Mutex<Option<String>>>,
     /// Compiled kernels that are used again; `None` where every renderer compiles its own.
     kept: Option<Mutex<Kept>>,
 }
+
+/// A dispatch should take about this long: long enough to hide its overhead, far below what loses a device.
+const PACE: Duration = Duration::from_millis(25);
+/// Likewise on software devices, which no watchdog guards and whose threads wait for each other at its end.
+const SOFTWARE_PACE: Duration = Duration::from_millis(100);
 
 /// Compiled kernels, those used last at the end.
 type Kept = Vec<(Specialisation, Arc<Stages>)>;
@@ -171,7 +179,7 @@ impl Gpu {
 
     fn open_adapter(info: DeviceInfo, adapter: &wgpu::Adapter) -> Result<Self, Error> {
         let shares_memory = matches!(info.kind, "software" | "integrated");
-        let mut features = wgpu::Features::SHADER_F64 | wgpu::Features::TIMESTAMP_QUERY;
+        let mut features = wgpu::Features::SHADER_F64 | wgpu::Features::SHADER_INT64 | wgpu::Features::TIMESTAMP_QUERY;
         if shares_memory {
             features |= wgpu::Features::MAPPABLE_PRIMARY_BUFFERS;
         }
@@ -192,14 +200,15 @@ impl Gpu {
         let slot = Arc::clone(&failure);
         device.set_device_lost_callback(move |_, message| note(&slot, message));
         let mappable = features.contains(wgpu::Features::MAPPABLE_PRIMARY_BUFFERS);
-        Ok(Self { info, device, queue, mappable, failure, kept: None })
+        let pace = if info.kind == "software" { SOFTWARE_PACE } else { PACE };
+        Ok(Self { info, device, queue, mappable, pace, failure, kept: None })
     }
 
-    /// From now on renderers share the kernels that they compile: for whoever renders many pictures and measures no
-    /// compilation.
+    /// From now on renderers share the kernels that they compile, and no dispatch is long: for whoever renders many pictures,
+    /// measures no compilation and may change their mind.
     #[must_use]
     pub fn keeping_kernels(self) -> Self {
-        Self { kept: Some(Mutex::default()), ..self }
+        Self { kept: Some(Mutex::default()), pace: PACE, ..self }
     }
 
     /// The kernels of a picture, and whether another picture has used them before.

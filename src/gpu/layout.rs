@@ -38,7 +38,7 @@ pub struct ParamValues {
     pub quantize_bias: f64,
     pub window_rows: u32,
     pub lists: ListValues,
-    pub sphere_count: u32,
+    pub window_low: u32,
     pub light_count: u32,
     pub max_depth: u32,
 }
@@ -52,7 +52,7 @@ pub struct ListValues {
     pub grid_per_unit: DVec3,
     pub screen_across: u32,
     pub grid_cells: UVec3,
-    pub grid_offsets: u32,
+    pub grid_first: u32,
     pub light_slack: f64,
 }
 
@@ -85,7 +85,7 @@ pub trait Layout {
     fn shape(values: &ShapeValues) -> Self::Shape;
     fn material(sphere: &scene::Sphere, scale: DVec3) -> Self::Material;
     fn light(light: &scene::Light) -> Self::Light;
-    /// `base` is where in the lists the offsets of the light's cells begin.
+    /// `base` is where in the cells those of the light begin.
     fn face(face: &accel::Face, base: u32) -> Self::Face;
     fn glass(sphere: &scene::Sphere) -> Self::Glass;
 }
@@ -132,10 +132,10 @@ macro_rules! layout {
                     screen_across: u32,
                     /// Number of cells along each axis.
                     grid_cells: [u32; 3],
-                    /// Where in the lists the offsets of the grid's cells begin.
-                    grid_offsets: u32,
-                    /// Number of spheres.
-                    sphere_count: u32,
+                    /// Where in the cells those of the grid begin.
+                    grid_first: u32,
+                    /// Where in the window begins what rounding took from its columns and rows.
+                    window_low: u32,
                     /// Number of lights.
                     light_count: u32,
                     /// Greatest number of reflection bounces.
@@ -168,8 +168,6 @@ macro_rules! layout {
                     color: [$real; 3],
                     /// Ambient coefficient.
                     ka: $real,
-                    /// Object to world space.
-                    scale: [$real; 3],
                     /// Diffuse coefficient.
                     kd: $real,
                     /// Specular coefficient.
@@ -178,6 +176,8 @@ macro_rules! layout {
                     kr: $real,
                     /// Specular exponent.
                     n: $real,
+                    /// Object to world space.
+                    scale: [$real; 3],
                     /// To the size that WGSL gives the struct.
                     padding: [u32; $material],
                 }
@@ -204,7 +204,7 @@ macro_rules! layout {
                     low: [$real; 2],
                     /// Cells per unit of u and v.
                     per_unit: $real,
-                    /// Where in the lists the offsets of its cells begin.
+                    /// Where in the cells its own begin.
                     first: u32,
                     /// To the alignment that WGSL gives the next vector.
                     padding0: [u32; $face0],
@@ -263,8 +263,8 @@ macro_rules! layout {
                         grid_per_unit: values.lists.grid_per_unit.as_vec3().to_array(),
                         screen_across: values.lists.screen_across,
                         grid_cells: values.lists.grid_cells.to_array(),
-                        grid_offsets: values.lists.grid_offsets,
-                        sphere_count: values.sphere_count,
+                        grid_first: values.lists.grid_first,
+                        window_low: values.window_low,
                         light_count: values.light_count,
                         max_depth: values.max_depth,
                         ..Params::zeroed()
@@ -284,11 +284,11 @@ macro_rules! layout {
                     Material {
                         color: vector(sphere.color),
                         ka: Self::real(sphere.ka),
-                        scale: vector(scale),
                         kd: Self::real(sphere.kd),
                         ks: Self::real(sphere.ks),
                         kr: Self::real(sphere.kr),
                         n: Self::real(sphere.n),
+                        scale: vector(scale),
                         ..Material::zeroed()
                     }
                 }
@@ -337,14 +337,14 @@ layout!(
 );
 
 const _: () = {
-    assert!(size_of::<single::Params>() == 112 && std::mem::offset_of!(single::Params, sphere_count) == 96);
+    assert!(size_of::<single::Params>() == 112 && std::mem::offset_of!(single::Params, window_low) == 96);
     assert!(size_of::<single::Shape>() == 32 && std::mem::offset_of!(single::Shape, inv_scale) == 16);
-    assert!(size_of::<single::Material>() == 48 && std::mem::offset_of!(single::Material, ks) == 32);
+    assert!(size_of::<single::Material>() == 48 && std::mem::offset_of!(single::Material, scale) == 32);
     assert!(size_of::<single::Light>() == 32 && std::mem::offset_of!(single::Light, intensity) == 16);
     assert!(size_of::<single::Face>() == 32 && size_of::<double::Face>() == 48);
     assert!(size_of::<single::Glass>() == 12 && size_of::<double::Glass>() == 24);
-    assert!(size_of::<double::Params>() == 160 && std::mem::offset_of!(double::Params, sphere_count) == 144);
+    assert!(size_of::<double::Params>() == 160 && std::mem::offset_of!(double::Params, window_low) == 144);
     assert!(size_of::<double::Shape>() == 64 && std::mem::offset_of!(double::Shape, inv_scale) == 32);
-    assert!(size_of::<double::Material>() == 96 && std::mem::offset_of!(double::Material, ks) == 64);
+    assert!(size_of::<double::Material>() == 96 && std::mem::offset_of!(double::Material, scale) == 64);
     assert!(size_of::<double::Light>() == 64 && std::mem::offset_of!(double::Light, intensity) == 32);
 };

@@ -39,6 +39,40 @@ impl<'a> Contents<'a> {
         Self { count, size: size_of::<T>(), write: Box::new(write) }
     }
 
+    /// One half of the bytes of each element.
+    fn half<T: Pod>(count: usize, half: usize, element: impl Fn(usize) -> T + Sync + 'a) -> Self {
+        let size = size_of::<T>() / 2;
+        let write = move |range: Range<usize>, bytes: &mut [u8]| {
+            for (place, index) in bytes.chunks_exact_mut(size).zip(range) {
+                place.copy_from_slice(&bytemuck::bytes_of(&element(index))[half * size..][..size]);
+            }
+        };
+        Self { count, size, write: Box::new(write) }
+    }
+
+    /// Bytes that are packed already.
+    pub(super) fn packed(all: &'a [u8]) -> Self {
+        let write = |range: Range<usize>, bytes: &mut [u8]| bytes.copy_from_slice(&all[range]);
+        Self { count: all.len(), size: 1, write: Box::new(write) }
+    }
+
+    /// The elements of several parts, each given by their number and by index, one part after another.
+    fn joined<T: Pod>(parts: Vec<(usize, impl Fn(usize) -> T + Sync + 'a)>) -> Self {
+        let count = parts.iter().map(|(count, _)| count).sum();
+        let write = move |range: Range<usize>, bytes: &mut [u8]| {
+            let mut places = bytes.chunks_exact_mut(size_of::<T>());
+            let mut start = 0;
+            for (count, element) in &parts {
+                let here = |index: usize| index.clamp(start, start + count) - start;
+                for (index, place) in (here(range.start)..here(range.end)).zip(places.by_ref()) {
+                    place.copy_from_slice(bytemuck::bytes_of(&element(index)));
+                }
+                start += count;
+            }
+        };
+        Self { count, size: size_of::<T>(), write: Box::new(write) }
+    }
+
     /// Bytes of all elements.
     pub(super) fn len(&self) -> usize {
         self.count * self.size
@@ -66,8 +100,8 @@ impl<'a> Contents<'a> {
 /// The contents of the buffers but the lists.
 pub(super) struct Packed<'a> {
     pub(super) params: Contents<'a>,
-    /// One per sphere.
-    pub(super) shapes: Contents<'a>,
+    /// The first halves of the shapes and the second, one of each per sphere.
+    pub(super) shapes: [Contents<'a>; 2],
     /// One per sphere.
     pub(super) materials: Contents<'a>,
     /// One per sphere; empty where nothing refracts.
@@ -79,8 +113,8 @@ pub(super) struct Packed<'a> {
     pub(super) window: Contents<'a>,
     /// Six faces a light with lists.
     pub(super) faces: Contents<'a>,
-    /// What rounding took from spheres and lights, for the tier that carries it.
-    pub(super) low: Option<[Contents<'a>; 2]>,
+    /// What rounding took from shapes, again in halves, and lights, for the tiers that carry it.
+    pub(super) low: Option<([Contents<'a>; 2], Contents<'a>)>,
 }
 
 impl<'a> Packed<'a> {
@@ -133,7 +167,7 @@ fn pack<'a, L: Layout + 'a>(
         quantize_bias: settings.quantize.bias(),
         window_rows: columns,
         lists: list_values(accel, accel.grid.as_ref().map_or(0, |_| bases[bases.len() - 1])),
-        sphere_count: scene.spheres.len() as u32,
+        window_low: columns + rows,
         light_count: scene.lights.len() as u32,
         max_depth: effects.depth,
     };
@@ -146,22 +180,27 @@ fn pack<'a, L: Layout + 'a>(
     let faces = accel.lights.faces.iter().zip(bases.iter().skip(1));
     let faces: Vec<_> = faces.flat_map(|(faces, &base)| faces.map(|face| (face, base))).collect();
     let (spheres, lights) = (scene.spheres.len(), &scene.lights);
-    let low_shape_at = shape.clone();
-    let low = move || {
-        [
-            Contents::new(spheres, move |i| L::shape(&low_shape::<L>(&low_shape_at(i)))),
-            Contents::new(lights.len(), |i| L::light(&low_light::<L>(&lights[i]))),
-        ]
+    let halves = |low: bool| {
+        [0, 1].map(|half| {
+            let shape = shape.clone();
+            Contents::half(spheres, half, move |i| {
+                let shape = shape(i);
+                L::shape(&if low { low_shape::<L>(&shape) } else { shape })
+            })
+        })
     };
     Packed {
         params: Contents::new(1, move |_| L::params(&params)),
-        shapes: Contents::new(spheres, move |i| L::shape(&shape(i))),
+        shapes: halves(false),
         materials: Contents::new(spheres, material),
         glasses: Contents::new(if on(Effect::Refraction) { spheres } else { 0 }, |i| L::glass(&scene.spheres[i])),
         lights: Contents::new(lights.len(), |i| L::light(&lights[i])),
         window: Contents::new(window.len(), move |i| window[i].extend(0.0).to_array().map(L::real)),
         faces: Contents::new(faces.len(), move |i| L::face(&faces[i].0, faces[i].1)),
-        low: with_low.then(low),
+        low: with_low.then(|| {
+            let lights = Contents::new(lights.len(), |i| L::light(&low_light::<L>(&lights[i])));
+            (halves(true), lights)
+        }),
     }
 }
 
@@ -170,43 +209,32 @@ fn all_lists(accel: &Acceleration) -> impl Iterator<Item = &Lists> {
     std::iter::once(&accel.screen.lists).chain(&accel.lights.lists).chain(accel.grid.iter().map(|grid| &grid.lists))
 }
 
-/// Where in the buffer the offsets of each begin.
+/// Where in the cells of all lists those of each begin.
 fn list_bases(accel: &Acceleration) -> Vec<u32> {
-    let next = |base: &mut u32, lists: &Lists| Some(std::mem::replace(base, *base + lists.offsets.len() as u32));
+    let next = |base: &mut u32, lists: &Lists| Some(std::mem::replace(base, *base + lists.cells() as u32));
     all_lists(accel).scan(0, next).collect()
 }
 
-/// The buffer of all lists: all offsets, then all entries. Offsets count from the beginning of the buffer.
-pub(super) fn list_contents(accel: &Acceleration) -> Contents<'_> {
-    let mut base = all_lists(accel).map(|lists| lists.offsets.len()).sum::<usize>();
-    let mut parts = Vec::new();
-    for lists in all_lists(accel) {
-        parts.push((lists.offsets.as_slice(), base as u32));
-        base += lists.entries.len();
-    }
-    parts.extend(all_lists(accel).map(|lists| (lists.entries.as_slice(), 0)));
-    let write = move |range: Range<usize>, bytes: &mut [u8]| {
-        let mut places = bytes.chunks_exact_mut(4);
-        let mut start = 0;
-        for &(values, base) in &parts {
-            let here = |index: usize| index.clamp(start, start + values.len()) - start;
-            for (value, place) in values[here(range.start)..here(range.end)].iter().zip(places.by_ref()) {
-                place.copy_from_slice(&(value + base).to_ne_bytes());
-            }
-            start += values.len();
-        }
-    };
-    Contents { count: base, size: 4, write: Box::new(write) }
+/// Where the list of each cell begins in the entries of all lists and where it ends; and these entries.
+pub(super) fn list_contents(accel: &Acceleration) -> [Contents<'_>; 2] {
+    let next = |base: &mut u32, lists: &Lists| Some(std::mem::replace(base, *base + lists.entries.len() as u32));
+    let bases = all_lists(accel).scan(0, next);
+    let cells = all_lists(accel).zip(bases).map(|(lists, base)| {
+        let cell = move |index: usize| [lists.offsets[index] + base, lists.offsets[index + 1] + base];
+        (lists.cells(), cell)
+    });
+    let entries = all_lists(accel).map(|lists| (lists.entries.len(), |index: usize| lists.entries[index]));
+    [Contents::joined(cells.collect()), Contents::joined(entries.collect())]
 }
 
 /// Where the shader finds the lists.
-fn list_values(accel: &Acceleration, grid_offsets: u32) -> ListValues {
+fn list_values(accel: &Acceleration, grid_first: u32) -> ListValues {
     let screen = ListValues {
         // From pixels to tiles with lists.
         screen_shift: TILE.trailing_zeros() + accel.screen.shift,
         screen_across: accel.screen.across,
         light_slack: accel.lights.slack,
-        grid_offsets,
+        grid_first,
         ..ListValues::default()
     };
     match &accel.grid {

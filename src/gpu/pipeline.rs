@@ -4,14 +4,12 @@ use std::num::NonZeroU32;
 
 use super::device::Gpu;
 use super::error::Error;
-use super::shader::{Kernel, Module, Storage};
+use super::shader::{Kernel, Module, Places, Storage};
+use crate::accel::Acceleration;
 use crate::effects::{Effect, EffectSet, Effects};
 use crate::scene::Scene;
 use crate::settings::{Secondary, Settings, Specular};
 
-/// Up to this many spheres and lights a pipeline is compiled for their very number: the array lengths in
-/// `shaders/few.wgsl`.
-pub(super) const MAX_FEW: usize = 16;
 /// Up to this many lights and their faces lie in uniform buffers: the array lengths in `shaders/lights_uniform.wgsl`, a sixth
 /// of that in `shaders/faces_uniform.wgsl`.
 pub(super) const MAX_UNIFORM_LIGHTS: usize = 32;
@@ -31,6 +29,8 @@ pub struct Specialisation {
     pub blinn: bool,
     /// How spheres and lights reach it.
     pub storage: Storage,
+    /// Where the spheres are that secondary rays look for.
+    pub places: Places,
     /// Side of the grid of samples in a pixel.
     pub samples: u32,
     /// Whether each pixel also says how many rays it took.
@@ -40,14 +40,8 @@ pub struct Specialisation {
 impl Specialisation {
     /// For `scene` with `effects` under `settings`.
     pub fn new(scene: &Scene, settings: &Settings, effects: &Effects, kernel: Kernel) -> Self {
-        let (spheres, lights) = (scene.spheres.len(), scene.lights.len());
-        let storage = if spheres.max(lights) <= MAX_FEW {
-            Storage::Few([spheres as u32, lights as u32])
-        } else if lights <= MAX_UNIFORM_LIGHTS {
-            Storage::Many
-        } else {
-            Storage::ManyLights
-        };
+        let lights = scene.lights.len();
+        let storage = if lights <= MAX_UNIFORM_LIGHTS { Storage::Lights(lights as u32) } else { Storage::ManyLights };
         Self {
             kernel,
             effects: effects.set,
@@ -55,9 +49,26 @@ impl Specialisation {
             skip_self: settings.secondary == Secondary::SkipSelf,
             blinn: settings.specular == Specular::Blinn,
             storage,
+            places: Places::Both,
             samples: settings.samples,
             count_rays: false,
         }
+    }
+
+    /// For the lists that rays will look through.
+    pub(super) fn with_lists(self, accel: &Acceleration) -> Self {
+        let Some(grid) = &accel.grid else { return Self { places: Places::Large, ..self } };
+        let places = match grid.large().len() {
+            0 => Places::Grid,
+            large if large == grid.lists.entries.len() => Places::Large,
+            _ => Places::Both,
+        };
+        Self { places, ..self }
+    }
+
+    /// Vectors that keep a path: as `shaders/paths.wgsl` has them.
+    pub(super) fn path_vectors(&self) -> u64 {
+        3 + u64::from(self.skip_self) + u64::from(self.kernel.carries_low())
     }
 
     /// The constants by name; booleans are 0 and 1.
@@ -78,11 +89,18 @@ impl Specialisation {
         ];
         if self.refraction.is_some() {
             constants.push(("SKIP_SELF_ALWAYS", f64::from(self.skip_self)));
+        } else {
+            constants.push(("VECTORS", self.path_vectors() as f64));
         }
-        if let Storage::Few([spheres, lights]) = self.storage {
-            constants.extend([("SPHERE_COUNT", f64::from(spheres)), ("LIGHT_COUNT", f64::from(lights))]);
+        if let Storage::Lights(count) = self.storage {
+            constants.push(("LIGHT_COUNT", f64::from(count)));
         }
         constants
+    }
+
+    /// Bytes that keep a path.
+    pub(super) fn path_size(&self) -> u64 {
+        self.path_vectors() * if self.kernel.is_double() { 32 } else { 16 }
     }
 
     /// Whether samples go on as paths.
@@ -90,27 +108,14 @@ impl Specialisation {
         self.refraction.is_none() && self.effects.has(Effect::Reflections)
     }
 
-    /// The effects whose rays find their spheres in lists: primary rays always do.
-    pub(super) fn listed_effects(&self) -> EffectSet {
-        match self.storage {
-            Storage::Few(_) => {
-                let walks = [Effect::Shadows, Effect::Reflections, Effect::Refraction];
-                walks.into_iter().fold(self.effects, |effects, effect| effects.with(effect, false))
-            }
-            _ => self.effects,
-        }
-    }
-
     /// The module that renders.
     pub fn module(&self) -> Module {
-        Module::render(self.kernel, self.storage, self.samples > 1, self.refraction)
+        Module::render(self.kernel, self.storage, self.places, self.samples > 1, self.refraction)
     }
 }
 
 /// The entry point that casts the primary rays of tiles.
 pub const SEE_TILES: &str = "see_tiles";
-/// The entry point that shades hits.
-pub const SHADE_HITS: &str = "shade_hits";
 /// The entry point that casts the reflection rays of paths.
 pub const WALK_PATHS: &str = "walk_paths";
 
@@ -120,9 +125,27 @@ enum Access {
     Uniform,
     Read,
     ReadWrite,
+    Texels,
+    WriteTexels,
 }
 
-use Access::{Read, ReadWrite, Uniform};
+use Access::{Read, ReadWrite, Texels, Uniform, WriteTexels};
+
+/// What a binding is bound to.
+#[derive(Debug, Clone)]
+pub(super) enum Resource {
+    Buffer(wgpu::Buffer),
+    Texels(wgpu::TextureView),
+}
+
+impl Resource {
+    pub(super) fn as_binding(&self) -> wgpu::BindingResource<'_> {
+        match self {
+            Self::Buffer(buffer) => buffer.as_entire_binding(),
+            Self::Texels(view) => wgpu::BindingResource::TextureView(view),
+        }
+    }
+}
 
 /// A compiled kernel and the bindings that it reads.
 #[derive(Debug)]
@@ -133,11 +156,11 @@ pub(super) struct Stage {
 }
 
 impl Stage {
-    /// Binds those of `buffers` that the kernel reads.
-    pub(super) fn bind(&self, gpu: &Gpu, buffers: &[(u32, &wgpu::Buffer)]) -> wgpu::BindGroup {
-        let used = buffers.iter().filter(|(binding, _)| self.bindings.contains(binding));
+    /// Binds those of `resources` that the kernel reads.
+    pub(super) fn bind(&self, gpu: &Gpu, resources: &[(u32, Resource)]) -> wgpu::BindGroup {
+        let used = resources.iter().filter(|(binding, _)| self.bindings.contains(binding));
         let entries: Vec<_> = used
-            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding: *binding, resource: buffer.as_entire_binding() })
+            .map(|(binding, resource)| wgpu::BindGroupEntry { binding: *binding, resource: resource.as_binding() })
             .collect();
         let descriptor = wgpu::BindGroupDescriptor { label: None, layout: &self.layout, entries: &entries };
         gpu.device.create_bind_group(&descriptor)
@@ -148,8 +171,6 @@ impl Stage {
 #[derive(Debug)]
 pub(super) struct Stages {
     pub(super) see: Stage,
-    pub(super) begin_shading: Stage,
-    pub(super) shade: Stage,
     /// What goes before a bounce of the paths, and the bounce; where there are reflections.
     pub(super) bounce: Option<[Stage; 2]>,
     /// From samples to pixels, where there are several a pixel.
@@ -160,34 +181,25 @@ pub(super) struct Stages {
 pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stages, Error> {
     let constants = specialisation.constants();
     let module = gpu.shader_module(&specialisation.module())?;
-    let is_few = matches!(specialisation.storage, Storage::Few(_));
-    let looped = if is_few { Uniform } else { Read };
     let lights = if specialisation.storage == Storage::ManyLights { Read } else { Uniform };
     // What every stage reads and writes.
-    let mut common = vec![(0, Uniform), (1, looped), (2, Read), (7, ReadWrite), (8, ReadWrite), (12, ReadWrite)];
+    let mut common =
+        vec![(0, Uniform), (1, Texels), (2, Texels), (20, Texels), (3, lights), (7, ReadWrite), (8, ReadWrite)];
+    common.extend([(13, Texels), (14, lights), (17, Texels)]);
     if specialisation.kernel.carries_low() {
-        common.push((9, looped));
+        common.extend([(9, Texels), (10, lights), (21, Texels)]);
     }
-    if !is_few {
-        common.push((13, Read));
+    // Glass, or paths to go on with.
+    match specialisation.refraction {
+        Some(_) => common.push((5, Read)),
+        None => common.extend([(12, ReadWrite), (18, WriteTexels), (19, Uniform)]),
     }
-    let primary = [(4, Read), (6, Read)];
-    // Paths to go on with, or glass.
-    let mut shading = vec![(3, lights)];
-    shading.push(if specialisation.refraction.is_some() { (5, Read) } else { (11, ReadWrite) });
-    if specialisation.kernel.carries_low() {
-        shading.push((10, lights));
-    }
-    if !is_few {
-        shading.push((14, lights));
-    }
+    let primary = [(4, Texels), (6, Uniform)];
     let between = gpu.shader_module(&Module::between_stages())?;
     let between = |entry_point| stage(gpu, &between, entry_point, &[], &[(12, ReadWrite), (16, ReadWrite)]);
     let see = stage(gpu, &module, SEE_TILES, &constants, &[&common[..], &primary].concat())?;
-    let begin_shading = between("begin_shading")?;
-    let shade = stage(gpu, &module, SHADE_HITS, &constants, &[&common[..], &primary, &shading].concat())?;
     let bounce = if specialisation.has_paths() {
-        let walk = stage(gpu, &module, WALK_PATHS, &constants, &[&common[..], &[(11, ReadWrite)]].concat())?;
+        let walk = stage(gpu, &module, WALK_PATHS, &constants, &[&common[..], &[(11, Texels)]].concat())?;
         Some([between("begin_bounce")?, walk])
     } else {
         None
@@ -199,7 +211,7 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
     } else {
         None
     };
-    Ok(Stages { see, begin_shading, shade, bounce, resolve })
+    Ok(Stages { see, bounce, resolve })
 }
 
 fn stage(
@@ -209,17 +221,24 @@ fn stage(
     constants: &[(&str, f64)],
     bindings: &[(u32, Access)],
 ) -> Result<Stage, Error> {
+    let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
     let entry = |&(binding, access): &(u32, Access)| wgpu::BindGroupLayoutEntry {
         binding,
         visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Buffer {
-            ty: match access {
-                Uniform => wgpu::BufferBindingType::Uniform,
-                Read => wgpu::BufferBindingType::Storage { read_only: true },
-                ReadWrite => wgpu::BufferBindingType::Storage { read_only: false },
+        ty: match access {
+            Uniform => buffer(wgpu::BufferBindingType::Uniform),
+            Read => buffer(wgpu::BufferBindingType::Storage { read_only: true }),
+            ReadWrite => buffer(wgpu::BufferBindingType::Storage { read_only: false }),
+            Texels => wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Uint,
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: false,
             },
-            has_dynamic_offset: false,
-            min_binding_size: None,
+            WriteTexels => wgpu::BindingType::StorageTexture {
+                access: wgpu::StorageTextureAccess::WriteOnly,
+                format: wgpu::TextureFormat::Rgba32Uint,
+                view_dimension: wgpu::TextureViewDimension::D2,
+            },
         },
         count: None,
     };

@@ -12,7 +12,7 @@ use super::layout::{Layout, ListValues, ParamValues, ShapeValues, double, single
 use super::pack::{bytes, low_light, low_shape, shape_value};
 use super::pipeline::Specialisation;
 use super::readable::Readable;
-use super::shader::{Kernel, Module, Storage};
+use super::shader::{Kernel, Module, Places, Storage};
 use crate::camera::NEAR_T_MIN;
 use crate::effects::EffectSet;
 use crate::geometry::{Ellipsoid, range_factor, shape_indices};
@@ -262,6 +262,7 @@ impl<'a> Prober<'a> {
             refraction: None,
             blinn: false,
             storage: Storage::Ranges,
+            places: Places::Large,
             count_rays: false,
             samples: 1,
         };
@@ -374,7 +375,7 @@ fn params<L: Layout>() -> Vec<u8> {
         quantize_bias: 0.0,
         window_rows: 0,
         lists: ListValues::default(),
-        sphere_count: 0,
+        window_low: 0,
         light_count: 0,
         max_depth: 0,
     })])

@@ -4,15 +4,16 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
+use wgpu::util::DeviceExt;
 
 use super::device::Gpu;
 use super::error::Error;
 use super::pack::{Contents, Packed, list_contents};
-use super::pipeline::{MAX_FEW, MAX_UNIFORM_LIGHTS, Specialisation, Stage, Stages};
+use super::pipeline::{MAX_UNIFORM_LIGHTS, Resource, Specialisation, Stage, Stages};
 use super::readable::Readable;
 use super::shader::{Kernel, Storage};
 use super::timestamps::Timestamps;
-use super::upload::upload;
+use super::upload::{empty_texels, max_texels, upload, upload_texels};
 use crate::accel::{Acceleration, Cover, Rounding};
 use crate::camera::Camera;
 use crate::effects::{Effect, Effects};
@@ -24,12 +25,10 @@ use crate::tiles::TILE;
 
 /// Pixels of a tile.
 const TILE_PIXELS: usize = (TILE * TILE) as usize;
-/// A dispatch should take about this long: long enough to hide its overhead, far below what loses a device.
-const TARGET_DISPATCH: Duration = Duration::from_millis(25);
 /// Intersection tests of the first dispatch, before any is measured: some milliseconds on the slowest device seen.
 const FIRST_DISPATCH_TESTS: u64 = 4_000_000;
-/// Tiles of a dispatch at the most, for the size of the pixel buffer: 16 MiB.
-const MAX_DISPATCH_TILES: u32 = 65_536;
+/// Tiles of a dispatch at the most: they lie in a uniform buffer.
+const MAX_DISPATCH_TILES: u32 = 16_384;
 
 /// Memory for paths at the most.
 const MAX_PATH_BYTES: u64 = 64 << 20;
@@ -78,7 +77,7 @@ pub struct GpuRenderer<'a> {
 #[derive(Debug)]
 struct Inputs {
     /// By binding.
-    buffers: Vec<(u32, wgpu::Buffer)>,
+    resources: Vec<(u32, Resource)>,
     specialisation: Specialisation,
 }
 
@@ -87,10 +86,10 @@ struct Inputs {
 struct Work {
     stages: Arc<Stages>,
     see_group: wgpu::BindGroup,
-    /// For what goes between two stages.
-    between_group: wgpu::BindGroup,
-    shade_group: wgpu::BindGroup,
-    walk_group: Option<wgpu::BindGroup>,
+    /// For what goes before a bounce.
+    begin_group: Option<wgpu::BindGroup>,
+    /// For a bounce, by whether another one follows, and from which of the two buffers of paths to the other.
+    walk_groups: Option<[[wgpu::BindGroup; 2]; 2]>,
     resolve_group: Option<wgpu::BindGroup>,
     tiles: wgpu::Buffer,
     stage: wgpu::Buffer,
@@ -102,8 +101,8 @@ struct Work {
     capacity: u32,
 }
 
-/// Bytes before the hits in the shader's `Stage`.
-const STAGE_HEAD: u64 = 32;
+/// Bytes of the shader's `Stage`.
+const STAGE_SIZE: u64 = 8;
 
 /// Invocations of a workgroup of the kernels that are not over tiles.
 const GROUP: u64 = 64;
@@ -128,16 +127,22 @@ impl<'a> GpuRenderer<'a> {
         let (scene, settings) = (scene.as_ref(), &settings);
         let specialisation = Specialisation::new(scene, settings, effects, kernel);
         let camera = Camera::new(scene, settings);
-        let accel = Acceleration::new(scene, &camera, specialisation.listed_effects(), rounding);
+        let accel = Acceleration::new(scene, &camera, specialisation.effects, rounding);
+        let specialisation = specialisation.with_lists(&accel);
         let packed = Packed::new(scene, settings, effects, kernel, &accel);
-        let lists = list_contents(&accel);
-        check_fits(gpu, &packed, &lists)?;
+        let list_tables = list_contents(&accel);
+        check_fits(gpu, &packed, &list_tables)?;
         let cover = accel.screen.cover();
         // The lists on the host go before the spheres take memory on the device.
-        let list_buffer = upload(gpu, &lists, wgpu::BufferUsages::STORAGE, lists.len())?;
-        drop(lists);
+        let [cells, entries] = &list_tables;
+        let lists = [
+            (13, Resource::Texels(upload_texels(gpu, cells, 2)?)),
+            (17, Resource::Texels(upload_texels(gpu, entries, 1)?)),
+        ];
+        drop(list_tables);
         drop(accel);
-        let buffers = scene_buffers(gpu, &packed, list_buffer, &specialisation)?;
+        let mut resources = scene_resources(gpu, &packed, &specialisation)?;
+        resources.extend(lists);
         let samples = u64::from(settings.samples * settings.samples);
         let tests_per_pixel = samples
             * (scene.spheres.len().min(64) as u64 + 1)
@@ -155,7 +160,7 @@ impl<'a> GpuRenderer<'a> {
             background: settings.quantize.levels(scene.background),
             max_depth: effects.depth,
             work: None,
-            inputs: Inputs { buffers, specialisation },
+            inputs: Inputs { resources, specialisation },
             tiles_per_dispatch: first.clamp(1, u64::from(MAX_DISPATCH_TILES)) as u32,
             times: DeviceTimes::default(),
             timestamps: None,
@@ -216,10 +221,13 @@ impl<'a> GpuRenderer<'a> {
     fn build(&mut self) -> Result<Work, Error> {
         let start = Instant::now();
         let gpu = self.gpu;
-        let Inputs { buffers, specialisation } = &self.inputs;
+        let Inputs { resources, specialisation } = &self.inputs;
         let (stages, used_before) = gpu.stages(specialisation)?;
         let capacity = self.capacity();
-        let work = gpu.checked("reserving buffers", || Work::new(gpu, stages, buffers, capacity, specialisation))?;
+        let has_bounces = self.max_depth > 0;
+        let work = gpu.checked("reserving buffers", || {
+            Work::new(gpu, stages, resources, capacity, specialisation, has_bounces)
+        })?;
         if !used_before {
             self.submit(&work, &[[0, 0]])?;
         }
@@ -231,7 +239,7 @@ impl<'a> GpuRenderer<'a> {
     fn capacity(&self) -> u32 {
         let info = &self.gpu.info;
         let specialisation = &self.inputs.specialisation;
-        let path = 2 * specialisation.kernel.path_size() * u64::from(specialisation.has_paths());
+        let path = 2 * specialisation.path_size() * u64::from(specialisation.has_paths());
         let tile_bytes = TILE_PIXELS as u64 * self.samples * path.max(4);
         let bytes = MAX_PATH_BYTES.min(info.max_storage_binding).min(info.max_buffer);
         // Paths take a workgroup for so many of them.
@@ -256,10 +264,9 @@ impl<'a> GpuRenderer<'a> {
 
     /// Runs all stages over `tiles` and waits for them.
     fn submit(&self, work: &Work, tiles: &[[u32; 2]]) -> Result<(), Error> {
-        self.gpu.queue.write_buffer(&work.tiles, 0, bytemuck::cast_slice(tiles));
-        // The first stage's paths go into the first half.
-        let half = work.capacity * TILE_PIXELS as u32 * self.samples as u32;
-        self.gpu.queue.write_buffer(&work.stage, 0, bytemuck::cast_slice(&[half, 0, 0, 0, 0, 0, 0]));
+        let packed: Vec<u32> = tiles.iter().map(|[x, y]| (x / TILE) | (y / TILE) << 16).collect();
+        self.gpu.queue.write_buffer(&work.tiles, 0, bytemuck::cast_slice(&packed));
+        self.gpu.queue.write_buffer(&work.stage, 0, &[0; STAGE_SIZE as usize]);
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
@@ -277,14 +284,13 @@ impl<'a> GpuRenderer<'a> {
             let tiles = Some(tiles.len() as u32);
             let stages = &work.stages;
             run(&stages.see, &work.see_group, tiles);
-            run(&stages.begin_shading, &work.between_group, Some(1));
-            run(&stages.shade, &work.shade_group, None);
-            if let (Some([begin_bounce, walk]), Some(walk_group)) = (&stages.bounce, &work.walk_group) {
-                for _ in 0..self.max_depth {
-                    run(begin_bounce, &work.between_group, Some(1));
-                    run(walk, walk_group, None);
-                    run(&stages.begin_shading, &work.between_group, Some(1));
-                    run(&stages.shade, &work.shade_group, None);
+            if let (Some([begin, walk]), Some(begin_group), Some(groups)) =
+                (&stages.bounce, &work.begin_group, &work.walk_groups)
+            {
+                for bounce in 0..self.max_depth {
+                    let has_next = bounce + 1 < self.max_depth;
+                    run(begin, begin_group, Some(1));
+                    run(walk, &groups[usize::from(has_next)][bounce as usize % 2], None);
                 }
             }
             if let (Some(resolve), Some(group)) = (&stages.resolve, &work.resolve_group) {
@@ -323,7 +329,7 @@ impl<'a> GpuRenderer<'a> {
 
     /// Sizes the next dispatch by the last one's time, growing by a factor of 4 at most.
     fn set_pace(&mut self, tiles: usize, took: Duration) {
-        let factor = (TARGET_DISPATCH.as_secs_f64() / took.as_secs_f64().max(1e-9)).min(4.0);
+        let factor = (self.gpu.pace.as_secs_f64() / took.as_secs_f64().max(1e-9)).min(4.0);
         self.tiles_per_dispatch = ((tiles as f64 * factor) as u32).clamp(1, MAX_DISPATCH_TILES);
     }
 }
@@ -332,9 +338,10 @@ impl Work {
     fn new(
         gpu: &Gpu,
         stages: Arc<Stages>,
-        buffers: &[(u32, wgpu::Buffer)],
+        resources: &[(u32, Resource)],
         capacity: u32,
         specialisation: &Specialisation,
+        has_bounces: bool,
     ) -> Self {
         let device = &gpu.device;
         let empty = |size, usage| {
@@ -345,29 +352,46 @@ impl Work {
         let slots = pixel_count * u64::from(specialisation.samples * specialisation.samples);
         let pixels = Readable::new(gpu, pixel_count);
         let ray_counts = Readable::new(gpu, if specialisation.count_rays { slots } else { 1 });
-        let path_size = specialisation.kernel.path_size();
-        let paths = if specialisation.has_paths() { 2 * slots * path_size } else { path_size };
+        let paths = specialisation.path_size() * if specialisation.has_paths() { slots } else { 1 };
         let color_size = if specialisation.kernel.is_double() { 32 } else { 16 };
-        let paths = empty(paths, storage);
-        let tiles = empty(u64::from(capacity) * 8, storage | wgpu::BufferUsages::COPY_DST);
-        let stage = empty(STAGE_HEAD + 8 * slots, storage | wgpu::BufferUsages::COPY_DST);
+        let paths = [0, 1].map(|_| empty_texels(gpu, paths));
+        let tiles =
+            empty(u64::from(MAX_DISPATCH_TILES) * 4, wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST);
+        let stage = empty(STAGE_SIZE, storage | wgpu::BufferUsages::COPY_DST);
         let workgroups = empty(12, storage | wgpu::BufferUsages::INDIRECT);
         let colors = stages.resolve.as_ref().map(|_| empty(slots * color_size, storage));
         let results = colors.as_ref().unwrap_or(&pixels.buffer);
-        let mut all: Vec<_> = buffers.iter().map(|(binding, buffer)| (*binding, buffer)).collect();
-        all.extend([(6, &tiles), (7, results), (8, &ray_counts.buffer), (12, &stage), (15, &pixels.buffer)]);
-        all.extend([(11, &paths), (16, &workgroups)]);
-        let see_group = stages.see.bind(gpu, &all);
-        let between_group = stages.begin_shading.bind(gpu, &all);
-        let shade_group = stages.shade.bind(gpu, &all);
-        let walk_group = stages.bounce.as_ref().map(|[_, walk]| walk.bind(gpu, &all));
+        let mut all = resources.to_vec();
+        let mut bind = |binding, buffer: &wgpu::Buffer| all.push((binding, Resource::Buffer(buffer.clone())));
+        bind(6, &tiles);
+        bind(7, results);
+        bind(8, &ray_counts.buffer);
+        bind(12, &stage);
+        bind(15, &pixels.buffer);
+        bind(16, &workgroups);
+        let has_next = [0_u32, 1].map(|has_next| {
+            let contents = bytemuck::bytes_of(&has_next);
+            device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: None,
+                contents,
+                usage: wgpu::BufferUsages::UNIFORM,
+            })
+        });
+        let turn = |stage: &Stage, from: usize, goes_on: usize| {
+            let [from, to] = [from, 1 - from].map(|half| Resource::Texels(paths[half].clone()));
+            let turn = [(11, from), (18, to), (19, Resource::Buffer(has_next[goes_on].clone()))];
+            stage.bind(gpu, &[&all[..], &turn].concat())
+        };
+        let see_group = turn(&stages.see, 1, usize::from(has_bounces));
+        let begin_group = stages.bounce.as_ref().map(|[begin, _]| begin.bind(gpu, &all));
+        let walks = |walk| [0, 1].map(|goes_on| [0, 1].map(|from| turn(walk, from, goes_on)));
+        let walk_groups = stages.bounce.as_ref().map(|[_, walk]| walks(walk));
         let resolve_group = stages.resolve.as_ref().map(|resolve| resolve.bind(gpu, &all));
         Self {
             stages,
             see_group,
-            between_group,
-            shade_group,
-            walk_group,
+            begin_group,
+            walk_groups,
             resolve_group,
             tiles,
             stage,
@@ -379,63 +403,55 @@ impl Work {
     }
 }
 
-/// The buffers of the scene, by binding.
-fn scene_buffers(
-    gpu: &Gpu,
-    packed: &Packed,
-    lists: wgpu::Buffer,
-    specialisation: &Specialisation,
-) -> Result<Vec<(u32, wgpu::Buffer)>, Error> {
+/// The buffers and textures of the scene, by binding, beside those of the lists.
+fn scene_resources(gpu: &Gpu, packed: &Packed, specialisation: &Specialisation) -> Result<Vec<(u32, Resource)>, Error> {
     let (storage, uniform) = (wgpu::BufferUsages::STORAGE, wgpu::BufferUsages::UNIFORM);
-    // A binding of size 0 is not allowed; the kernel never reads past the counts.
-    let filled = |contents: &Contents, usage| upload(gpu, contents, usage, contents.len().max(64));
-    // Uniform buffers have a fixed number of elements.
-    let fixed = |contents: &Contents, count: usize| upload(gpu, contents, uniform, count * contents.element_size());
-    let shapes = |contents: &Contents| match specialisation.storage {
-        Storage::Few(_) => fixed(contents, MAX_FEW),
-        _ => filled(contents, storage),
-    };
-    let lights = |contents: &Contents| match specialisation.storage {
-        Storage::Few(_) => fixed(contents, MAX_FEW),
-        Storage::Many => fixed(contents, MAX_UNIFORM_LIGHTS),
-        _ => filled(contents, storage),
-    };
-    let faces = |contents: &Contents| match specialisation.storage {
+    // A binding of size 0 is not allowed.
+    let filled =
+        |contents: &Contents, usage| upload(gpu, contents, usage, contents.len().max(64)).map(Resource::Buffer);
+    let lit = |contents: &Contents, max: usize| match specialisation.storage {
+        // As many as there are: the kernel asks how many.
         Storage::ManyLights => filled(contents, storage),
-        _ => fixed(contents, 6 * MAX_UNIFORM_LIGHTS),
+        // Uniform buffers have a fixed number of elements.
+        _ => upload(gpu, contents, uniform, max * contents.element_size()).map(Resource::Buffer),
     };
-    let mut buffers = vec![
+    let texels = |contents| upload_texels(gpu, contents, 4).map(Resource::Texels);
+    let mut resources = vec![
         (0, filled(&packed.params, uniform)?),
-        (1, shapes(&packed.shapes)?),
-        (2, filled(&packed.materials, storage)?),
-        (3, lights(&packed.lights)?),
-        (4, filled(&packed.window, storage)?),
-        (13, lists),
-        (14, faces(&packed.faces)?),
+        (1, texels(&packed.shapes[0])?),
+        (20, texels(&packed.shapes[1])?),
+        (2, texels(&packed.materials)?),
+        (3, lit(&packed.lights, MAX_UNIFORM_LIGHTS)?),
+        (4, texels(&packed.window)?),
+        (14, lit(&packed.faces, 6 * MAX_UNIFORM_LIGHTS)?),
     ];
     if specialisation.refraction.is_some() {
-        buffers.push((5, filled(&packed.glasses, storage)?));
+        resources.push((5, filled(&packed.glasses, storage)?));
     }
-    if let Some([low_shapes, low_lights]) = &packed.low {
-        buffers.extend([(9, shapes(low_shapes)?), (10, lights(low_lights)?)]);
+    if let Some(([first_halves, second_halves], lights)) = &packed.low {
+        resources.extend([(9, texels(first_halves)?), (21, texels(second_halves)?)]);
+        resources.push((10, lit(lights, MAX_UNIFORM_LIGHTS)?));
     }
-    Ok(buffers)
+    Ok(resources)
 }
 
-/// Refuses a scene whose buffers are larger than the device's bindings.
-fn check_fits(gpu: &Gpu, packed: &Packed, lists: &Contents) -> Result<(), Error> {
+/// Refuses a scene whose tables are larger than the device's bindings and textures.
+fn check_fits(gpu: &Gpu, packed: &Packed, lists: &[Contents; 2]) -> Result<(), Error> {
+    let buffer = gpu.info.max_storage_binding.min(gpu.info.max_buffer);
+    let table = |texel_size| max_texels(gpu, texel_size);
+    let [cells, entries] = lists;
     let sizes = [
-        ("spheres", packed.materials.len().max(packed.shapes.len())),
-        ("lights", packed.lights.len()),
-        ("columns and rows", packed.window.len()),
-        ("faces around the lights", packed.faces.len()),
-        ("lists", lists.len()),
+        ("spheres", packed.materials.len(), table(16)),
+        ("lights", packed.lights.len(), buffer),
+        ("columns and rows", packed.window.len(), table(16)),
+        ("faces around the lights", packed.faces.len(), buffer),
+        ("cells with lists", cells.len(), table(8)),
+        ("lists", entries.len(), table(4)),
     ];
-    let limit = gpu.info.max_storage_binding.min(gpu.info.max_buffer);
-    match sizes.iter().find(|(_, size)| *size as u64 > limit) {
+    match sizes.iter().find(|(_, size, limit)| *size as u64 > *limit) {
         None => Ok(()),
-        Some((what, size)) => Err(Error::NoDevice(format!(
-            "the {what} of this scene take {size} bytes, but {} binds {limit} at the most; `--device cpu` has no such limit",
+        Some((what, size, limit)) => Err(Error::NoDevice(format!(
+            "the {what} of this scene take {size} bytes, but {} holds {limit} at the most; `--device cpu` has no such limit",
             gpu.info
         ))),
     }

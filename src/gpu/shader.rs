@@ -51,15 +51,6 @@ impl Kernel {
         matches!(self, Self::Tier(Tier::Robust) | Self::Pairs | Self::NoBarrier)
     }
 
-    /// Bytes of a `Path` of `shaders/paths.wgsl`; a test holds them together.
-    pub fn path_size(self) -> u64 {
-        match (self.is_double(), self.carries_low()) {
-            (true, _) => 128,
-            (false, true) => 80,
-            (false, false) => 64,
-        }
-    }
-
     /// How it rounds.
     pub fn rounding(self) -> Rounding {
         if self.is_double() {
@@ -77,16 +68,25 @@ impl Kernel {
     }
 }
 
+/// Where the spheres are that secondary rays look for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Places {
+    /// All in the cells of the grid.
+    Grid,
+    /// All too large for the cells of the grid, or so few.
+    Large,
+    /// Some of each.
+    Both,
+}
+
 /// How spheres and lights reach the kernel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Storage {
-    /// In uniform buffers, the numbers of spheres and lights compiled in.
-    Few([u32; 2]),
-    /// Spheres in storage buffers, with lists of those that a ray can meet; lights in uniform buffers.
-    Many,
-    /// Spheres likewise, lights in storage buffers as well.
+    /// Spheres in textures, with lists of those that a ray can meet; so many lights in uniform buffers.
+    Lights(u32),
+    /// Spheres likewise, lights of any number in storage buffers.
     ManyLights,
-    /// In storage buffers, a range for each ray of a batch.
+    /// In storage buffers, a range of spheres for each ray of a batch.
     Ranges,
 }
 
@@ -96,17 +96,9 @@ fn data_parts(kernel: Kernel, storage: Storage) -> Vec<Part> {
     let mut parts = vec![
         if kernel.is_double() { part!("real_f64.wgsl") } else { part!("real_f32.wgsl") },
         part!("types.wgsl"),
-        match storage {
-            Storage::Few(_) => part!("few.wgsl"),
-            Storage::Many | Storage::ManyLights => part!("many.wgsl"),
-            Storage::Ranges => part!("ranges.wgsl"),
-        },
+        if storage == Storage::Ranges { part!("ranges.wgsl") } else { part!("many.wgsl") },
+        if matches!(storage, Storage::Lights(_)) { part!("lights_uniform.wgsl") } else { part!("lights_storage.wgsl") },
     ];
-    match storage {
-        Storage::Few(_) => {}
-        Storage::Many => parts.push(part!("lights_uniform.wgsl")),
-        Storage::ManyLights | Storage::Ranges => parts.push(part!("lights_storage.wgsl")),
-    }
     if !kernel.is_double() {
         parts.push(barrier);
     }
@@ -129,8 +121,8 @@ fn intersection_parts(kernel: Kernel, storage: Storage) -> Vec<Part> {
     });
     parts.push(part!("intersect.wgsl"));
     parts.extend(match storage {
-        Storage::Few(_) | Storage::Ranges => vec![part!("every.wgsl")],
-        Storage::Many => vec![part!("lists.wgsl"), part!("faces_uniform.wgsl")],
+        Storage::Ranges => vec![part!("every.wgsl")],
+        Storage::Lights(_) => vec![part!("lists.wgsl"), part!("faces_uniform.wgsl")],
         Storage::ManyLights => vec![part!("lists.wgsl"), part!("faces_storage.wgsl")],
     });
     parts
@@ -153,11 +145,22 @@ pub struct Module {
 impl Module {
     /// The module that renders with `kernel`, one sample a pixel or several; where something refracts, with room for so many
     /// rays that wait.
-    pub fn render(kernel: Kernel, storage: Storage, samples: bool, refraction: Option<NonZeroU32>) -> Self {
+    pub fn render(
+        kernel: Kernel,
+        storage: Storage,
+        places: Places,
+        samples: bool,
+        refraction: Option<NonZeroU32>,
+    ) -> Self {
         let mut parts = intersection_parts(kernel, storage);
+        parts.extend(match places {
+            Places::Grid => vec![part!("grid.wgsl"), part!("secondary_grid.wgsl")],
+            Places::Large => vec![part!("secondary_large.wgsl")],
+            Places::Both => vec![part!("grid.wgsl"), part!("secondary_both.wgsl")],
+        });
         parts.extend([part!("film.wgsl"), part!("quantize.wgsl")]);
         parts.push(if samples { part!("film_samples.wgsl") } else { part!("film_pixels.wgsl") });
-        parts.extend([part!("shade.wgsl"), part!("reflect.wgsl"), part!("stages.wgsl")]);
+        parts.extend([part!("shade.wgsl"), part!("reflect.wgsl")]);
         if let Some(waiting) = refraction {
             // Only workgroup arrays may take their size from a constant of the pipeline.
             let text = format!("const MAX_WAITING: u32 = {waiting}u;\n").into();
@@ -166,6 +169,7 @@ impl Module {
         } else {
             parts.push(part!("paths.wgsl"));
         }
+        parts.push(part!("stages.wgsl"));
         Self::join(parts)
     }
 
@@ -177,7 +181,7 @@ impl Module {
     /// The module that makes pixels of samples.
     pub fn resolve(kernel: Kernel) -> Self {
         let mut parts = vec![part!("effects.wgsl")];
-        parts.extend(data_parts(kernel, Storage::Many));
+        parts.extend(data_parts(kernel, Storage::Lights(0)));
         parts.extend([part!("quantize.wgsl"), part!("resolve.wgsl")]);
         Self::join(parts)
     }

@@ -1,4 +1,4 @@
-//! From packed elements to buffers of the device, in parallel and without a copy of the whole on the host.
+//! From packed elements to buffers and textures of the device, in parallel and without a copy of the whole on the host.
 
 use rayon::prelude::*;
 
@@ -45,6 +45,80 @@ pub(super) fn upload(
         }
         buffer
     })
+}
+
+/// Texels in a row of a texture that stands for a buffer: as `texel` of `shaders/many_textures.wgsl` has it.
+pub(super) const ROW: u32 = 4096;
+
+/// Greatest size of `contents` as such a texture, in bytes.
+pub(super) fn max_texels(gpu: &Gpu, texel_size: u64) -> u64 {
+    u64::from(ROW) * texel_size * u64::from(gpu.device.limits().max_texture_dimension_2d)
+}
+
+/// A texture for so many bytes that kernels keep and read, in texels of four `u32`.
+pub(super) fn empty_texels(gpu: &Gpu, bytes: u64) -> wgpu::TextureView {
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING;
+    let rows = bytes.div_ceil(u64::from(ROW) * 16) as u32;
+    texture(gpu, rows, wgpu::TextureFormat::Rgba32Uint, usage).create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+fn texture(gpu: &Gpu, rows: u32, format: wgpu::TextureFormat, usage: wgpu::TextureUsages) -> wgpu::Texture {
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width: ROW, height: rows, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage,
+        view_formats: &[],
+    })
+}
+
+/// A texture with `contents` in reading order, in texels of one, two or four `u32`.
+pub(super) fn upload_texels(gpu: &Gpu, contents: &Contents, components: u32) -> Result<wgpu::TextureView, Error> {
+    gpu.checked("filling textures", || texels(gpu, contents, components))
+}
+
+/// Likewise; errors are the caller's.
+pub(super) fn texels(gpu: &Gpu, contents: &Contents, components: u32) -> wgpu::TextureView {
+    let format = match components {
+        1 => wgpu::TextureFormat::R32Uint,
+        2 => wgpu::TextureFormat::Rg32Uint,
+        _ => wgpu::TextureFormat::Rgba32Uint,
+    };
+    let row = (ROW * components * 4) as usize;
+    // Whole rows of whole elements of every size.
+    let band = BAND.next_multiple_of(3 * row);
+    let extent = |rows: usize| wgpu::Extent3d { width: ROW, height: rows as u32, depth_or_array_layers: 1 };
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+    let texture = texture(gpu, contents.len().div_ceil(row).max(1) as u32, format, usage);
+    for start in (0..contents.len()).step_by(band) {
+        let len = band.min(contents.len() - start);
+        let rows = len.div_ceil(row);
+        let staging = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: (rows * row) as u64,
+            usage: wgpu::BufferUsages::COPY_SRC,
+            mapped_at_creation: true,
+        });
+        if let Ok(mut view) = staging.get_mapped_range_mut(..len as u64) {
+            write(contents, start, view.slice(..));
+        }
+        staging.unmap();
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let source = wgpu::TexelCopyBufferInfo {
+            buffer: &staging,
+            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row as u32), rows_per_image: None },
+        };
+        let origin = wgpu::Origin3d { y: (start / row) as u32, ..wgpu::Origin3d::ZERO };
+        let target = wgpu::TexelCopyTextureInfo { origin, ..texture.as_image_copy() };
+        encoder.copy_buffer_to_texture(source, target, extent(rows));
+        gpu.queue.submit([encoder.finish()]);
+        // Only then is the memory on the way free for the next band.
+        let _ = gpu.device.poll(wgpu::PollType::wait_indefinitely());
+    }
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
 /// Packs what lies from byte `start` on.

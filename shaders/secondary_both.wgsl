@@ -1,0 +1,5 @@
+// The nearest intersection of a ray that leaves a surface, where some spheres are in the grid and some too large for it.
+
+fn nearest_secondary(ray: Ray, own: Own, range: Range) -> Hit {
+    return nearest_in_grid(nearest_large(no_hit(), ray, own, range), ray, own, range);
+}
