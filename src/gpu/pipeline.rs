@@ -89,7 +89,7 @@ impl Specialisation {
         ];
         if self.refraction.is_some() {
             constants.push(("SKIP_SELF_ALWAYS", f64::from(self.skip_self)));
-        } else {
+        } else if self.storage != Storage::Ranges {
             constants.push(("VECTORS", self.path_vectors() as f64));
         }
         if let Storage::Lights(count) = self.storage {
