@@ -41,7 +41,7 @@ fn ray_of(path: u32) -> Ray {
 }
 
 // One bounce of each path.
-@compute @workgroup_size(64)
+@compute @workgroup_size(GROUP)
 fn walk_paths(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= stage.path_count {
         return;
@@ -61,7 +61,7 @@ fn walk_paths(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 
 // The colour of each hit, and the path that it begins or goes on.
-@compute @workgroup_size(64)
+@compute @workgroup_size(GROUP)
 fn shade_hits(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= stage.hit_count {
         return;

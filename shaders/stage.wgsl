@@ -15,8 +15,11 @@ struct Stage {
 // Workgroups of the next dispatch.
 @group(0) @binding(16) var<storage, read_write> workgroups: array<u32, 3>;
 
+// As in effects.wgsl.
+override GROUP: u32 = 64u;
+
 fn dispatch_over(count: u32) {
-    workgroups[0] = (count + 63u) / 64u;
+    workgroups[0] = (count + GROUP - 1u) / GROUP;
     workgroups[1] = 1u;
     workgroups[2] = 1u;
 }

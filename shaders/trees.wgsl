@@ -86,7 +86,7 @@ fn tree_color(primary: Ray, seen: Hit) -> vec3r {
 }
 
 // The colour of each primary hit and all that follows.
-@compute @workgroup_size(64)
+@compute @workgroup_size(GROUP)
 fn shade_hits(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= stage.hit_count {
         return;

@@ -7,10 +7,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 use serde::Serialize;
 
 use super::error::Error;
+use super::kernel_cache::KernelCache;
 use super::pipeline::{Specialisation, Stages, compile};
 use super::selftest::SelfTest;
 use super::shader::{Kernel, Module};
+use super::tuned::DeviceTuning;
 use crate::precision::Tier;
+use crate::tuning::Tuning;
 
 /// Which device renders.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -91,6 +94,15 @@ impl DeviceInfo {
         }
     }
 
+    /// Why the device cannot do with `tuning`; `None` where it can.
+    pub fn problem_with(&self, tuning: &Tuning) -> Option<String> {
+        let too_large = || {
+            let (wanted, most) = (tuning.workgroup, self.max_invocations);
+            (wanted > most).then(|| format!("workgroup is {wanted}, and the device has at most {most}"))
+        };
+        tuning.problem().or_else(too_large)
+    }
+
     fn matches(&self, text: &str) -> bool {
         let text = text.to_lowercase();
         self.pci.to_lowercase() == text || [&self.name, &self.driver].iter().any(|s| s.to_lowercase().contains(&text))
@@ -119,11 +131,15 @@ impl fmt::Display for DeviceInfo {
 pub struct Gpu {
     /// What it is.
     pub info: DeviceInfo,
+    /// What is tuned to it.
+    pub tuned: DeviceTuning,
     pub(super) device: wgpu::Device,
     pub(super) queue: wgpu::Queue,
     /// Whether host and device share memory, so that a storage buffer can be mapped.
     pub(super) mappable: bool,
     failure: Arc<Mutex<Option<String>>>,
+    /// Those of earlier runs.
+    pub(super) kernel_cache: Option<KernelCache>,
     /// Compiled kernels that are used again; `None` where every renderer compiles its own.
     kept: Option<Mutex<Kept>>,
 }
@@ -172,6 +188,10 @@ impl Gpu {
     fn open_adapter(info: DeviceInfo, adapter: &wgpu::Adapter) -> Result<Self, Error> {
         let shares_memory = matches!(info.kind, "software" | "integrated");
         let mut features = wgpu::Features::SHADER_F64 | wgpu::Features::TIMESTAMP_QUERY;
+        let keeps_kernels = KernelCache::is_wanted(info.kind);
+        if keeps_kernels {
+            features |= wgpu::Features::PIPELINE_CACHE;
+        }
         if shares_memory {
             features |= wgpu::Features::MAPPABLE_PRIMARY_BUFFERS;
         }
@@ -192,7 +212,19 @@ impl Gpu {
         let slot = Arc::clone(&failure);
         device.set_device_lost_callback(move |_, message| note(&slot, message));
         let mappable = features.contains(wgpu::Features::MAPPABLE_PRIMARY_BUFFERS);
-        Ok(Self { info, device, queue, mappable, failure, kept: None })
+        let tuned = DeviceTuning::of(&info);
+        let kernel_cache = keeps_kernels.then(|| KernelCache::open(&device, &adapter.get_info())).flatten();
+        Ok(Self { info, tuned, device, queue, mappable, failure, kernel_cache, kept: None })
+    }
+
+    /// Why compiled kernels of earlier runs are not used, where they could be.
+    pub fn kernel_cache_note(&self) -> Option<&str> {
+        self.kernel_cache.as_ref()?.note()
+    }
+
+    /// Renders with `tuning` from now on, which has to be one that [`DeviceInfo::problem_with`] has no objection to.
+    pub fn set_tuning(&mut self, tuning: Tuning) {
+        self.tuned.tuning = tuning;
     }
 
     /// From now on renderers share the kernels that they compile: for whoever renders many pictures and measures no
@@ -212,6 +244,7 @@ impl Gpu {
             return Ok((Arc::clone(&kept[kept.len() - 1].1), true));
         }
         let stages = Arc::new(compile(self, specialisation)?);
+        self.keep_compiled();
         if let Some(mut kept) = kept() {
             if kept.len() == MAX_KEPT {
                 kept.remove(0);

@@ -4,14 +4,15 @@ use std::num::NonZeroU32;
 
 use super::device::Gpu;
 use super::error::Error;
+use super::kernel_cache::KernelCache;
 use super::shader::{Kernel, Module, Storage};
 use crate::effects::{Effect, EffectSet, Effects};
 use crate::scene::Scene;
 use crate::settings::{Secondary, Settings, Specular};
+use crate::tuning::{MAX_COMPILED_IN, Tuning};
 
-/// Up to this many spheres and lights a pipeline is compiled for their very number: the array lengths in
-/// `shaders/few.wgsl`.
-pub(super) const MAX_FEW: usize = 16;
+/// Spheres and lights of a pipeline that is compiled for their very number: the array lengths in `shaders/few.wgsl`.
+pub(super) const MAX_FEW: usize = MAX_COMPILED_IN as usize;
 /// Up to this many lights and their faces lie in uniform buffers: the array lengths in `shaders/lights_uniform.wgsl`, a sixth
 /// of that in `shaders/faces_uniform.wgsl`.
 pub(super) const MAX_UNIFORM_LIGHTS: usize = 32;
@@ -35,13 +36,15 @@ pub struct Specialisation {
     pub samples: u32,
     /// Whether each pixel also says how many rays it took.
     pub count_rays: bool,
+    /// Invocations of a workgroup of the kernels that are not over tiles.
+    pub workgroup: u32,
 }
 
 impl Specialisation {
     /// For `scene` with `effects` under `settings`.
-    pub fn new(scene: &Scene, settings: &Settings, effects: &Effects, kernel: Kernel) -> Self {
+    pub fn new(scene: &Scene, settings: &Settings, effects: &Effects, kernel: Kernel, tuning: &Tuning) -> Self {
         let (spheres, lights) = (scene.spheres.len(), scene.lights.len());
-        let storage = if spheres.max(lights) <= MAX_FEW {
+        let storage = if spheres.max(lights) <= MAX_FEW.min(tuning.compiled_in as usize) {
             Storage::Few([spheres as u32, lights as u32])
         } else if lights <= MAX_UNIFORM_LIGHTS {
             Storage::Many
@@ -57,6 +60,7 @@ impl Specialisation {
             storage,
             samples: settings.samples,
             count_rays: false,
+            workgroup: tuning.workgroup,
         }
     }
 
@@ -75,6 +79,7 @@ impl Specialisation {
             ("BLINN", f64::from(self.blinn)),
             ("SAMPLES", f64::from(self.samples)),
             ("COUNT_RAYS", f64::from(self.count_rays)),
+            ("GROUP", f64::from(self.workgroup)),
         ];
         if self.refraction.is_some() {
             constants.push(("SKIP_SELF_ALWAYS", f64::from(self.skip_self)));
@@ -181,25 +186,37 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
     if !is_few {
         shading.push((14, lights));
     }
-    let between = gpu.shader_module(&Module::between_stages())?;
-    let between = |entry_point| stage(gpu, &between, entry_point, &[], &[(12, ReadWrite), (16, ReadWrite)]);
-    let see = stage(gpu, &module, SEE_TILES, &constants, &[&common[..], &primary].concat())?;
-    let begin_shading = between("begin_shading")?;
-    let shade = stage(gpu, &module, SHADE_HITS, &constants, &[&common[..], &primary, &shading].concat())?;
-    let bounce = if specialisation.has_paths() {
-        let walk = stage(gpu, &module, WALK_PATHS, &constants, &[&common[..], &[(11, ReadWrite)]].concat())?;
-        Some([between("begin_bounce")?, walk])
-    } else {
-        None
-    };
-    let resolve = if specialisation.samples > 1 {
-        let module = gpu.shader_module(&Module::resolve(specialisation.kernel))?;
-        let constants = [("SAMPLES", f64::from(specialisation.samples))];
-        Some(stage(gpu, &module, "resolve", &constants, &[(0, Uniform), (7, Read), (15, ReadWrite)])?)
-    } else {
-        None
-    };
-    Ok(Stages { see, begin_shading, shade, bounce, resolve })
+    let between_module = gpu.shader_module(&Module::between_stages())?;
+    let group = [("GROUP", f64::from(specialisation.workgroup))];
+    let between = |entry_point| stage(gpu, &between_module, entry_point, &group, &[(12, ReadWrite), (16, ReadWrite)]);
+    // Each on a thread: a driver compiles one kernel at a time.
+    std::thread::scope(|scope| {
+        let main = |entry_point, own: &[&[_]]| {
+            let bindings = [&[&common[..]], own].concat().concat();
+            let (module, constants) = (&module, &constants);
+            scope.spawn(move || stage(gpu, module, entry_point, constants, &bindings))
+        };
+        let see = main(SEE_TILES, &[&primary]);
+        let shade = main(SHADE_HITS, &[&primary, &shading]);
+        let walk = specialisation.has_paths().then(|| main(WALK_PATHS, &[&[(11, ReadWrite)]]));
+        let begin_shading = between("begin_shading")?;
+        let begin_bounce = specialisation.has_paths().then(|| between("begin_bounce")).transpose()?;
+        let resolve = (specialisation.samples > 1).then(|| {
+            let module = gpu.shader_module(&Module::resolve(specialisation.kernel))?;
+            let constants = [("SAMPLES", f64::from(specialisation.samples))];
+            stage(gpu, &module, "resolve", &constants, &[(0, Uniform), (7, Read), (15, ReadWrite)])
+        });
+        let resolve = resolve.transpose()?;
+        let [see, shade] = [see, shade].map(joined);
+        let walk = walk.map(joined).transpose()?;
+        let bounce = begin_bounce.zip(walk).map(|(begin, walk)| [begin, walk]);
+        Ok(Stages { see: see?, begin_shading, shade: shade?, bounce, resolve })
+    })
+}
+
+/// What a thread has compiled.
+fn joined(thread: std::thread::ScopedJoinHandle<Result<Stage, Error>>) -> Result<Stage, Error> {
+    thread.join().unwrap_or_else(|_| Err(Error::Lost("compiling the kernels failed".into())))
 }
 
 fn stage(
@@ -241,7 +258,7 @@ fn stage(
                 constants,
                 zero_initialize_workgroup_memory: false,
             },
-            cache: None,
+            cache: gpu.kernel_cache.as_ref().map(KernelCache::handle),
         });
         Stage { pipeline, layout, bindings: bindings.iter().map(|(binding, _)| *binding).collect() }
     })

@@ -263,6 +263,7 @@ impl<'a> Prober<'a> {
             blinn: false,
             storage: Storage::Ranges,
             count_rays: false,
+            workgroup: 64,
             samples: 1,
         };
         let pipeline = self.gpu.checked("compiling the probe", || {

@@ -13,7 +13,7 @@ use super::readable::Readable;
 use super::shader::{Kernel, Storage};
 use super::timestamps::Timestamps;
 use super::upload::upload;
-use crate::accel::{Acceleration, Cover, Rounding};
+use crate::accel::{Acceleration, Cover, Density, Rounding};
 use crate::camera::Camera;
 use crate::effects::{Effect, Effects};
 use crate::geometry::in_range;
@@ -24,10 +24,6 @@ use crate::tiles::TILE;
 
 /// Pixels of a tile.
 const TILE_PIXELS: usize = (TILE * TILE) as usize;
-/// A dispatch should take about this long: long enough to hide its overhead, far below what loses a device.
-const TARGET_DISPATCH: Duration = Duration::from_millis(25);
-/// Intersection tests of the first dispatch, before any is measured: some milliseconds on the slowest device seen.
-const FIRST_DISPATCH_TESTS: u64 = 4_000_000;
 /// Tiles of a dispatch at the most, for the size of the pixel buffer: 16 MiB.
 const MAX_DISPATCH_TILES: u32 = 65_536;
 
@@ -61,8 +57,8 @@ pub struct GpuRenderer<'a> {
     width: u32,
     /// Samples of a pixel.
     samples: u64,
-    /// Number of tiles of the whole picture; no band has more.
-    picture_tiles: u64,
+    /// Tiles of the whole picture that any sphere may cover; no band has more.
+    covered_tiles: u64,
     background: [u8; 3],
     max_depth: u32,
     work: Option<Work>,
@@ -105,9 +101,6 @@ struct Work {
 /// Bytes before the hits in the shader's `Stage`.
 const STAGE_HEAD: u64 = 32;
 
-/// Invocations of a workgroup of the kernels that are not over tiles.
-const GROUP: u64 = 64;
-
 impl<'a> GpuRenderer<'a> {
     /// Prepares `scene` for `gpu`; the kernels are compiled when the first tile needs them.
     pub fn new(gpu: &'a Gpu, scene: &Scene, settings: &Settings, effects: &Effects, tier: Tier) -> Result<Self, Error> {
@@ -126,13 +119,22 @@ impl<'a> GpuRenderer<'a> {
     ) -> Result<Self, Error> {
         let (scene, settings) = in_range(scene, settings);
         let (scene, settings) = (scene.as_ref(), &settings);
-        let specialisation = Specialisation::new(scene, settings, effects, kernel);
+        let tuning = &gpu.tuned.tuning;
+        let specialisation = Specialisation::new(scene, settings, effects, kernel, tuning);
         let camera = Camera::new(scene, settings);
-        let accel = Acceleration::new(scene, &camera, specialisation.listed_effects(), rounding);
+        let listed = specialisation.listed_effects();
+        let lists = |density| Acceleration::with_density(scene, &camera, listed, rounding, density);
+        let mut accel = lists(&tuning.density);
+        // Finer lists than those of the class must not keep a scene from fitting.
+        if tuning.density != Density::DEFAULT && list_contents(&accel).len() as u64 > binding_limit(gpu) {
+            accel = lists(&Density::DEFAULT);
+        }
         let packed = Packed::new(scene, settings, effects, kernel, &accel);
         let lists = list_contents(&accel);
         check_fits(gpu, &packed, &lists)?;
         let cover = accel.screen.cover();
+        let picture_tiles = u64::from(scene.width.div_ceil(TILE)) * u64::from(scene.height.div_ceil(TILE));
+        let covered_tiles = picture_tiles.min(cover.most());
         // The lists on the host go before the spheres take memory on the device.
         let list_buffer = upload(gpu, &lists, wgpu::BufferUsages::STORAGE, lists.len())?;
         drop(lists);
@@ -145,13 +147,13 @@ impl<'a> GpuRenderer<'a> {
             * (1 + u64::from(effects.depth));
         // A tree of rays doubles with each bounce where rays can wait.
         let tests_per_pixel = tests_per_pixel.saturating_mul(1 << effects.waiting(scene).min(32));
-        let first = FIRST_DISPATCH_TESTS / tests_per_pixel.saturating_mul(TILE_PIXELS as u64);
+        let first = tuning.first_dispatch_tests as u64 / tests_per_pixel.saturating_mul(TILE_PIXELS as u64);
         Ok(Self {
             gpu,
             cover,
             width: scene.width,
             samples,
-            picture_tiles: u64::from(scene.width.div_ceil(TILE)) * u64::from(scene.height.div_ceil(TILE)),
+            covered_tiles,
             background: settings.quantize.levels(scene.background),
             max_depth: effects.depth,
             work: None,
@@ -235,9 +237,10 @@ impl<'a> GpuRenderer<'a> {
         let tile_bytes = TILE_PIXELS as u64 * self.samples * path.max(4);
         let bytes = MAX_PATH_BYTES.min(info.max_storage_binding).min(info.max_buffer);
         // Paths take a workgroup for so many of them.
-        let groups = u64::from(info.max_workgroups) * GROUP / (TILE_PIXELS as u64 * self.samples);
+        let groups =
+            u64::from(info.max_workgroups) * u64::from(specialisation.workgroup) / (TILE_PIXELS as u64 * self.samples);
         let limit = u64::from(MAX_DISPATCH_TILES.min(info.max_workgroups)).min(groups).min(bytes / tile_bytes);
-        self.picture_tiles.min(limit).max(1) as u32
+        self.covered_tiles.min(limit).max(1) as u32
     }
 
     fn dispatch(&mut self, work: &Work, tiles: &[[u32; 2]]) -> Result<Duration, Error> {
@@ -323,7 +326,8 @@ impl<'a> GpuRenderer<'a> {
 
     /// Sizes the next dispatch by the last one's time, growing by a factor of 4 at most.
     fn set_pace(&mut self, tiles: usize, took: Duration) {
-        let factor = (TARGET_DISPATCH.as_secs_f64() / took.as_secs_f64().max(1e-9)).min(4.0);
+        let target = self.gpu.tuned.tuning.dispatch_ms * 1e-3;
+        let factor = (target / took.as_secs_f64().max(1e-9)).min(4.0);
         self.tiles_per_dispatch = ((tiles as f64 * factor) as u32).clamp(1, MAX_DISPATCH_TILES);
     }
 }
@@ -422,6 +426,11 @@ fn scene_buffers(
     Ok(buffers)
 }
 
+/// Bytes of a buffer that a kernel can read at the most.
+fn binding_limit(gpu: &Gpu) -> u64 {
+    gpu.info.max_storage_binding.min(gpu.info.max_buffer)
+}
+
 /// Refuses a scene whose buffers are larger than the device's bindings.
 fn check_fits(gpu: &Gpu, packed: &Packed, lists: &Contents) -> Result<(), Error> {
     let sizes = [
@@ -431,7 +440,7 @@ fn check_fits(gpu: &Gpu, packed: &Packed, lists: &Contents) -> Result<(), Error>
         ("faces around the lights", packed.faces.len()),
         ("lists", lists.len()),
     ];
-    let limit = gpu.info.max_storage_binding.min(gpu.info.max_buffer);
+    let limit = binding_limit(gpu);
     match sizes.iter().find(|(_, size)| *size as u64 > limit) {
         None => Ok(()),
         Some((what, size)) => Err(Error::NoDevice(format!(
