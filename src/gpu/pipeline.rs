@@ -186,19 +186,12 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
     if !is_few {
         shading.push((14, lights));
     }
-    let between_module = gpu.shader_module(&Module::between_stages())?;
-    let group = [("GROUP", f64::from(specialisation.workgroup))];
-    let between = |entry_point| stage(gpu, &between_module, entry_point, &group, &[(12, ReadWrite), (16, ReadWrite)]);
-    // Each on a thread: a driver compiles one kernel at a time.
-    std::thread::scope(|scope| {
-        let main = |entry_point, own: &[&[_]]| {
-            let bindings = [&[&common[..]], own].concat().concat();
-            let (module, constants) = (&module, &constants);
-            scope.spawn(move || stage(gpu, module, entry_point, constants, &bindings))
-        };
-        let see = main(SEE_TILES, &[&primary]);
-        let shade = main(SHADE_HITS, &[&primary, &shading]);
-        let walk = specialisation.has_paths().then(|| main(WALK_PATHS, &[&[(11, ReadWrite)]]));
+    let kernel =
+        |entry_point, own: &[(u32, Access)]| stage(gpu, &module, entry_point, &constants, &[&common[..], own].concat());
+    let small_ones = || -> Result<_, Error> {
+        let module = gpu.shader_module(&Module::between_stages())?;
+        let group = [("GROUP", f64::from(specialisation.workgroup))];
+        let between = |entry_point| stage(gpu, &module, entry_point, &group, &[(12, ReadWrite), (16, ReadWrite)]);
         let begin_shading = between("begin_shading")?;
         let begin_bounce = specialisation.has_paths().then(|| between("begin_bounce")).transpose()?;
         let resolve = (specialisation.samples > 1).then(|| {
@@ -206,16 +199,22 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
             let constants = [("SAMPLES", f64::from(specialisation.samples))];
             stage(gpu, &module, "resolve", &constants, &[(0, Uniform), (7, Read), (15, ReadWrite)])
         });
-        let resolve = resolve.transpose()?;
-        let [see, shade] = [see, shade].map(joined);
-        let walk = walk.map(joined).transpose()?;
-        let bounce = begin_bounce.zip(walk).map(|(begin, walk)| [begin, walk]);
-        Ok(Stages { see: see?, begin_shading, shade: shade?, bounce, resolve })
+        Ok((begin_shading, begin_bounce, resolve.transpose()?))
+    };
+    // A driver compiles a kernel on the thread that asks for it: side by side. The largest one goes here, since allocating is
+    // cheapest on the main thread.
+    std::thread::scope(|scope| {
+        let walk = specialisation.has_paths().then(|| scope.spawn(|| kernel(WALK_PATHS, &[(11, ReadWrite)])));
+        let others = scope.spawn(|| Ok::<_, Error>((kernel(SEE_TILES, &primary)?, small_ones()?)));
+        let shade = kernel(SHADE_HITS, &[&primary[..], &shading].concat())?;
+        let (see, (begin_shading, begin_bounce, resolve)) = joined(others)?;
+        let bounce = begin_bounce.zip(walk.map(joined).transpose()?).map(|(begin, walk)| [begin, walk]);
+        Ok(Stages { see, begin_shading, shade, bounce, resolve })
     })
 }
 
 /// What a thread has compiled.
-fn joined(thread: std::thread::ScopedJoinHandle<Result<Stage, Error>>) -> Result<Stage, Error> {
+fn joined<T>(thread: std::thread::ScopedJoinHandle<Result<T, Error>>) -> Result<T, Error> {
     thread.join().unwrap_or_else(|_| Err(Error::Lost("compiling the kernels failed".into())))
 }
 

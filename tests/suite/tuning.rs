@@ -18,7 +18,9 @@ fn tunings() -> [Tuning; 3] {
     let class = Tuning::of(Class::Software);
     let ends = [0, 1].map(|end| {
         let mut tuning = class;
-        KNOBS.iter().for_each(|knob| (knob.set)(&mut tuning, knob.limits[end]));
+        for knob in &KNOBS {
+            (knob.set)(&mut tuning, knob.limits[end]);
+        }
         tuning
     });
     let density = Density { grid_cells: 0.3, light_entries: 1.0, ..class.density };
