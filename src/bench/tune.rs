@@ -14,7 +14,7 @@ use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::tuning::{Class, KNOBS, Knob, Tuning};
 
-/// A candidate has to be this much faster than what it replaces: less may be noise.
+/// A candidate has to be this much faster than what it replaces.
 const WORTHWHILE: f64 = 0.97;
 
 /// The scenes on which a number makes a difference, by family and size.
@@ -155,9 +155,9 @@ fn tune_knob(gpu: &mut Gpu, plan: &TunePlan, knob: &Knob, best: &Tuning) -> Resu
     for trial in &mut trials {
         trial.ratio = ((medians(trial) - reference) / subjects.len() as f64).exp();
     }
-    if let Some(fastest) = trials.iter().min_by(|a, b| a.ratio.total_cmp(&b.ratio))
-        && fastest.ratio < WORTHWHILE
-    {
+    let reference = trials.iter().find(|trial| trial.value == before);
+    let faster = trials.iter().filter(|trial| reference.is_some_and(|reference| trial.is_faster(reference)));
+    if let Some(fastest) = faster.min_by(|a, b| a.ratio.total_cmp(&b.ratio)) {
         result.kept = fastest.value;
     }
     result.trials = trials;
@@ -187,6 +187,18 @@ impl Subject {
             }
         }
         Ok(times.prepare_ms + times.render_ms + times.read_back_ms)
+    }
+}
+
+impl Trial {
+    /// Whether this is faster in its medians, in its least times, and in four of five runs: on a busy machine any one of
+    /// these says little.
+    fn is_faster(&self, other: &Self) -> bool {
+        let sum = |trial: &Self, time: &dyn Fn(&Sample) -> f64| trial.times.iter().map(|t| time(t).ln()).sum::<f64>();
+        let runs = self.times.iter().map(|times| times.runs().len()).min().unwrap_or(0);
+        let wins = |run: &usize| sum(self, &|times| times.runs()[*run]) < sum(other, &|times| times.runs()[*run]);
+        let least = (sum(self, &Sample::min) - sum(other, &Sample::min)) / self.times.len() as f64;
+        self.ratio < WORTHWHILE && least.exp() < WORTHWHILE && 5 * (0..runs).filter(wins).count() >= 4 * runs
     }
 }
 
