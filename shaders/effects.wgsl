@@ -21,3 +21,6 @@ override SAMPLES: u32 = 1u;
 
 // Each pixel also says how many rays it took.
 override COUNT_RAYS: bool = false;
+
+// Invocations of a workgroup of the kernels that are not over tiles.
+override GROUP: u32 = 64u;

@@ -69,7 +69,7 @@ fn follow(ray: Ray, hit: Hit, slot: u32) {
 }
 
 // One bounce of each path.
-@compute @workgroup_size(64)
+@compute @workgroup_size(GROUP)
 fn walk_paths(@builtin(global_invocation_id) id: vec3<u32>) {
     let count = stage.path_count;
     let is_path = id.x < count;

@@ -10,11 +10,14 @@ struct Stage {
 // Workgroups of the next dispatch.
 @group(0) @binding(16) var<storage, read_write> workgroups: array<u32, 3>;
 
+// As in effects.wgsl.
+override GROUP: u32 = 64u;
+
 @compute @workgroup_size(1)
 fn begin_bounce() {
     stage.path_count = stage.next_path_count;
     stage.next_path_count = 0u;
-    workgroups[0] = (stage.path_count + 63u) / 64u;
+    workgroups[0] = (stage.path_count + GROUP - 1u) / GROUP;
     workgroups[1] = 1u;
     workgroups[2] = 1u;
 }

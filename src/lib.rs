@@ -7,6 +7,7 @@
 
 pub mod accel;
 pub mod bench;
+mod cache;
 pub mod camera;
 pub mod cli;
 pub mod compare;
@@ -25,6 +26,7 @@ pub mod settings;
 pub mod stress;
 pub mod study;
 pub mod tiles;
+pub mod tuning;
 pub mod view;
 #[cfg(feature = "view")]
 pub mod viewer;

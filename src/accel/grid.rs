@@ -41,8 +41,8 @@ struct Cells<'a> {
 }
 
 impl Grid {
-    /// Bins everything that `enclosure` has.
-    pub(super) fn new(enclosure: &Enclosure, rounding: Rounding) -> Self {
+    /// Bins everything that `enclosure` has, with so many cells for each sphere, roughly.
+    pub(super) fn new(enclosure: &Enclosure, cells_per_sphere: f64, rounding: Rounding) -> Self {
         let large = large_spheres(enclosure);
         let is_small = |sphere: &usize| large.binary_search(&(*sphere as u32)).is_err();
         let small = (0..enclosure.len()).into_par_iter().filter(is_small).map(|sphere| enclosure.solid(sphere));
@@ -51,7 +51,7 @@ impl Grid {
         let low = DVec3::from_array(low.to_array().map(|x| f64::from((x as f32).next_down())));
         let size = (high - low).max(DVec3::splat(1e-30));
         // Cells as nearly cubes as the box allows.
-        let wanted = cells_per_sphere(enclosure.len()) * (enclosure.len() - large.len()).max(1) as f64;
+        let wanted = cells_per_sphere * (enclosure.len() - large.len()).max(1) as f64;
         let sorted = {
             let mut edges = size.to_array();
             edges.sort_by(f64::total_cmp);
@@ -88,11 +88,6 @@ impl Grid {
     pub fn large(&self) -> &[u32] {
         self.lists.of(self.lists.cells() - 1)
     }
-}
-
-/// How many cells there are for each sphere: where the spheres are few, finer cells are cheap.
-fn cells_per_sphere(spheres: usize) -> f64 {
-    if spheres < 200_000 { 3.0 } else { 1.5 }
 }
 
 /// The few spheres that are far larger than the typical one.

@@ -5,6 +5,7 @@
 //! list has whatever a test, rounding included, can take for a hit, so a picture is byte for byte that of all spheres.
 
 mod bounds;
+mod density;
 mod grid;
 mod light_buffer;
 mod lists;
@@ -18,6 +19,7 @@ use crate::scene::Scene;
 use bounds::Enclosure;
 
 pub use bounds::Rounding;
+pub use density::Density;
 pub use grid::Grid;
 pub use light_buffer::{Face, LightBuffer, REACH};
 pub use lists::Lists;
@@ -37,25 +39,28 @@ pub struct Acceleration {
 impl Acceleration {
     /// The lists that the effects of `scene` call for, for a renderer that rounds like this.
     pub fn new(scene: &Scene, camera: &Camera, effects: EffectSet, rounding: Rounding) -> Self {
+        Self::with_density(scene, camera, effects, rounding, &Density::DEFAULT)
+    }
+
+    /// Likewise, as fine as `density` says.
+    pub fn with_density(
+        scene: &Scene,
+        camera: &Camera,
+        effects: EffectSet,
+        rounding: Rounding,
+        density: &Density,
+    ) -> Self {
         let enclosure = Enclosure::new(scene, effects.has(Effect::Ellipsoids), rounding);
         let lights: Vec<DVec3> = scene.lights.iter().map(|light| light.position).collect();
         let lit = effects.has(Effect::Shadows);
-        let entries = light_entries(scene.spheres.len() as u64, lights.len() as u64);
+        let spheres = scene.spheres.len();
+        let entries = density.entries_of_a_light(spheres, lights.len());
+        let cells_per_sphere = density.cells_per_sphere(spheres);
         Self {
             screen: ScreenLists::new(&enclosure, camera),
             lights: LightBuffer::new(&enclosure, if lit { &lights } else { &[] }, entries, rounding),
             grid: (effects.has(Effect::Reflections) || effects.has(Effect::Refraction))
-                .then(|| Grid::new(&enclosure, rounding)),
+                .then(|| Grid::new(&enclosure, cells_per_sphere, rounding)),
         }
     }
-}
-
-/// Entries of the lists of all lights together, roughly, unless the cells become larger than the spheres: 64 MiB.
-const MAX_LIGHT_ENTRIES: u64 = 1 << 24;
-
-/// How many entries the lists of one light may have, roughly. Finer cells mean shorter lists; with many spheres, the building
-/// of the lists and the memory that they take count for more.
-fn light_entries(spheres: u64, lights: u64) -> u64 {
-    let per_sphere = if spheres < 50_000 { 12 } else { 6 };
-    (per_sphere * spheres + 256).min(MAX_LIGHT_ENTRIES / lights.max(1))
 }

@@ -85,6 +85,12 @@ pub struct Cover {
 }
 
 impl Cover {
+    /// How many tiles of [`TILE`] pixels any sphere may cover, or a few more.
+    pub fn most(&self) -> u64 {
+        let listed = self.has_spheres.iter().filter(|has| **has).count() as u64;
+        listed << (2 * self.shift)
+    }
+
     /// Top-left pixels of the tiles of [`TILE`] pixels that any sphere may cover, in rows `first` to `first + count`, in
     /// reading order; `first` is a multiple of [`TILE`].
     pub fn covered(&self, first: u32, count: u32) -> Vec<[u32; 2]> {

@@ -7,6 +7,7 @@ mod plots;
 mod report;
 mod stages;
 mod table;
+mod tune;
 
 pub use families::{Axis, FAMILIES, Family};
 pub use fit::growth_exponent;
@@ -14,3 +15,4 @@ pub use measure::{Bench, FamilyResult, Growth, Measured, Plan, Renderer, SceneRe
 pub use report::html;
 pub use stages::{STAGES, Stage};
 pub use table::{csv, csv_columns, heads};
+pub use tune::{KnobResult, Trial, TunePlan, TuneResult, tune};

@@ -6,6 +6,7 @@ use super::failure::{Failure, OK, OUTPUT};
 use super::files::{check_folder, command, save, save_json, seconds};
 use super::options::{DeviceOptions, PictureOptions};
 use super::output::{errln, out};
+use super::tune::run_tune;
 use crate::bench::{FAMILIES, Family, Plan, Subject, bench, csv, heads, html};
 
 /// Arguments of `trueray bench`.
@@ -26,6 +27,9 @@ pub(super) struct Args {
     /// Time for the counted runs of one scene on one renderer, in seconds; what would take longer is skipped
     #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = seconds)]
     seconds: f64,
+    /// Measure instead what suits this device best, and keep it for later runs on it; without a report or CSV
+    #[arg(long, conflicts_with_all = ["families", "list", "write", "report", "csv", "no_cpu", "seconds"])]
+    tune: bool,
     /// Leave out the CPU reference
     #[arg(long)]
     no_cpu: bool,
@@ -56,6 +60,11 @@ pub(super) fn run(args: &Args) -> u8 {
 
 fn run_bench(args: &Args) -> Result<(), Failure> {
     let families = if args.families.is_empty() { FAMILIES.iter().collect() } else { args.families.clone() };
+    if args.tune {
+        let json = args.json.as_deref();
+        json.map_or(Ok(()), check_folder)?;
+        return run_tune(&args.picture, &args.device, args.max_spheres, args.runs as usize, json);
+    }
     if args.list {
         list(&families);
         return Ok(());

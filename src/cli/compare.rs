@@ -6,13 +6,13 @@ use serde::Serialize;
 
 use super::failure::{DIFFERENT, Failure, OK, USAGE};
 use super::input::Loaded;
-use super::options::{DeviceOptions, PictureOptions, device_name};
+use super::options::{DeviceOptions, PictureOptions, device_name, open_device};
 use super::output::{errln, out, outln};
 use crate::compare::{Difference, Explanation, Limits, Verdict, heatmap, three_wide, verdict};
 use crate::cpu::{Judge, Reference};
 use crate::engine::{Backend, Engine, render_picture};
 use crate::film::{Format, Leniency, Picture, Target, read_picture};
-use crate::gpu::{Choice, Gpu};
+use crate::gpu::Choice;
 use crate::precision::Tier;
 
 /// Arguments of `trueray compare`.
@@ -185,7 +185,7 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Subje
         if *choice == Choice::Cpu {
             return Err(Failure::new(USAGE, "--device cpu would compare the reference with itself"));
         }
-        let gpu = Gpu::open(choice)?;
+        let gpu = open_device(choice)?;
         let tier = args.device.selection(Some(&gpu), scene, &settings, &effects).tier;
         let backend = Backend::Device(&gpu, tier);
         let mut engine = Engine::new(backend, scene, &settings, &effects)?;

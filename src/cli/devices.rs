@@ -1,8 +1,8 @@
 //! `trueray devices`.
 
 use super::failure::{Failure, NO_DEVICE, OK, OUTPUT};
-use super::output::outln;
-use crate::gpu::{Error, list};
+use super::output::{errln, outln};
+use crate::gpu::{DeviceTuning, Error, list};
 
 /// Arguments of `trueray devices`.
 #[derive(Debug, clap::Args)]
@@ -41,6 +41,11 @@ fn print(args: &Args) -> Result<(), Failure> {
                 device.max_workgroups,
                 device.max_invocations
             );
+            let tuned = DeviceTuning::of(device);
+            if let Some(warning) = &tuned.warning {
+                errln!("trueray: {warning}");
+            }
+            outln!("   tuning    {}", tuned.summary());
         }
     }
     if devices.is_empty() {

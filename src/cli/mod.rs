@@ -4,6 +4,7 @@ mod bench;
 mod check;
 mod compare;
 mod devices;
+mod environment;
 mod export;
 mod failure;
 mod files;
@@ -15,6 +16,7 @@ mod render;
 mod stats;
 mod stress;
 mod study;
+mod tune;
 #[cfg(feature = "view")]
 mod view;
 
@@ -34,7 +36,9 @@ use clap::{Parser, Subcommand};
     arg_required_else_help = true,
     after_help = "Exit codes: 0 ok, 2 usage, 3 scene, 4 no device, 5 device lost, 6 output.\n\
                   compare: 0 same, 1 different, 2 trouble. stress: 1 a promise is broken.\n\
-                  Environment: WGPU_ADAPTER_NAME, WGPU_POWER_PREF, WGPU_BACKEND, VK_DRIVER_FILES are honoured."
+                  Environment: WGPU_ADAPTER_NAME, WGPU_POWER_PREF, WGPU_BACKEND, VK_DRIVER_FILES are honoured;\n\
+                  TRUERAY_NO_TUNING=1 ignores what `bench --tune` has kept, TRUERAY_KERNEL_CACHE=0 the kernels that\n\
+                  earlier runs have compiled."
 )]
 struct Cli {
     #[command(subcommand)]
@@ -66,21 +70,9 @@ enum Command {
     Devices(devices::Args),
 }
 
-/// Mesa's device-select layer asks the display server which device it uses, and complains where there is none. Nothing here
-/// needs a display, and devices are ranked by their type.
-fn keep_displays_out() {
-    const SWITCH: &str = "NODEVICE_SELECT";
-    if std::env::var_os(SWITCH).is_none() {
-        #[allow(unsafe_code, reason = "the process has one thread yet, so no other reads the environment")]
-        unsafe {
-            std::env::set_var(SWITCH, "1");
-        }
-    }
-}
-
 /// Runs the program with the arguments of the process.
 pub fn run() -> ExitCode {
-    keep_displays_out();
+    environment::prepare();
     let cli = Cli::parse();
     let code = match cli.command {
         None => render::run(&cli.render),

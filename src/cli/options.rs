@@ -153,16 +153,25 @@ impl DeviceOptions {
     pub(super) fn open(&self) -> Result<Option<Gpu>, Error> {
         match &self.device {
             Choice::Cpu => Ok(None),
-            Choice::Auto => match Gpu::open(&Choice::Auto) {
+            Choice::Auto => match open_device(&Choice::Auto) {
                 Err(Error::NoDevice(_)) if crate::gpu::list().is_ok_and(|list| list.is_empty()) => {
                     errln!("trueray: no Vulkan device was found, rendering on the CPU reference");
                     Ok(None)
                 }
                 result => result.map(Some),
             },
-            choice => Gpu::open(choice).map(Some),
+            choice => open_device(choice).map(Some),
         }
     }
+}
+
+/// Opens a Vulkan device, and says where a tuning that is kept for it cannot be used.
+pub(super) fn open_device(choice: &Choice) -> Result<Gpu, Error> {
+    let gpu = Gpu::open(choice)?;
+    if let Some(warning) = &gpu.tuned.warning {
+        errln!("trueray: {warning}");
+    }
+    Ok(gpu)
 }
 
 impl DeviceOptions {

@@ -69,14 +69,15 @@ fn render_all(args: &Args) -> Result<u8, Failure> {
         return Err(Failure::new(USAGE, "several scenes need a folder for -o, or none"));
     }
     let settings = args.picture.settings()?;
-    // Opening a device takes longer than reading most scenes: both at once.
+    // Opening a device takes longer than reading most scenes: both at once. The device is opened here, since a driver's
+    // many allocations are cheaper on the thread whose heap grows in large steps.
     let start = Instant::now();
-    let (gpu, first) = std::thread::scope(|scope| {
-        let opening = scope.spawn(|| (args.device.open(), start.elapsed()));
-        let first = Loaded::read(&args.scenes[0], args.quiet);
-        (opening.join(), first)
+    let (gpu, open_time, first) = std::thread::scope(|scope| {
+        let reading = scope.spawn(|| Loaded::read(&args.scenes[0], args.quiet));
+        let gpu = args.device.open();
+        (gpu, start.elapsed(), reading.join())
     });
-    let (gpu, open_time) = gpu.map_err(|_| Failure::new(super::failure::DEVICE_LOST, "opening the device failed"))?;
+    let first = first.map_err(|_| Failure::new(super::failure::SCENE, "reading the scene failed"))?;
 
     let mut all_stats = Vec::new();
     let mut code = OK;
@@ -102,8 +103,17 @@ fn render_all(args: &Args) -> Result<u8, Failure> {
     if let Some(path) = &args.stats_json {
         write_stats(path, &all_stats)?;
     }
+    // The files are complete, and the process ends: closing a device takes some milliseconds and gains nothing. But drivers
+    // may still be writing compiled kernels to their cache; where any can have been compiled, they are waited for.
+    let is_software = gpu.as_ref().is_some_and(|gpu| gpu.info.kind == "software");
+    if is_software && all_stats.iter().all(|stats| stats.times.compile_ms < MAYBE_COMPILED_MS) {
+        std::mem::forget(gpu);
+    }
     Ok(code)
 }
+
+/// A software driver that takes less than this has found its kernels in its cache.
+const MAYBE_COMPILED_MS: f64 = 40.0;
 
 fn render_one(
     args: &Args,
@@ -120,6 +130,12 @@ fn render_one(
     let selection = args.device.selection(gpu, scene, settings, &effects);
     if args.explain || args.verbose {
         err!("{}{}", explanation(&loaded.name, &effects), precision_explanation(&selection));
+        if let Some(gpu) = gpu {
+            errln!("  tuning       {}", gpu.tuned.summary());
+            if let Some(note) = gpu.kernel_cache_note() {
+                errln!("  note         {note}");
+            }
+        }
     }
     let backend = gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, selection.tier));
 
@@ -159,6 +175,7 @@ fn render_one(
         spheres,
         lights,
         device: device_name(gpu),
+        tuning: gpu.map(|gpu| gpu.tuned.summary()),
         settings: *settings,
         effects,
         precision: gpu.map(|_| selection),

@@ -19,6 +19,8 @@ pub(super) struct Stats {
     pub spheres: usize,
     pub lights: usize,
     pub device: String,
+    /// What is tuned to the device; the CPU reference has no tuning.
+    pub tuning: Option<String>,
     pub settings: Settings,
     pub effects: Effects,
     /// The kernel's tier and why; the CPU reference knows no tiers.
@@ -46,6 +48,9 @@ impl Stats {
         row("picture", format!("{} × {}", self.width, self.height));
         row("scene", format!("{} spheres, {} lights", self.spheres, self.lights));
         row("device", self.device.clone());
+        if let Some(tuning) = &self.tuning {
+            row("tuning", tuning.clone());
+        }
         row("effects", format!("{} (depth {})", self.effects.set, self.effects.depth));
         if let Some(Selection { tier, reason, .. }) = &self.precision {
             row("precision", format!("{tier}: {reason}"));

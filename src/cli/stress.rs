@@ -6,6 +6,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::failure::{BROKEN, Failure, OK, OUTPUT, USAGE};
+use super::options::open_device;
 use super::output::{out, outln};
 use crate::gpu::{Choice, Gpu, Kernel};
 use crate::precision::Tier;
@@ -110,7 +111,7 @@ fn stress(args: &Args) -> Result<u8, Failure> {
             "stress checks a Vulkan device; the CPU reference is what it is checked against",
         ));
     }
-    let gpu = Gpu::open(&args.device)?;
+    let gpu = open_device(&args.device)?;
     let mut kernels: Vec<Kernel> = Vec::new();
     for kernel in args.precision.iter().flat_map(|selected| &selected.0) {
         if !kernels.contains(kernel) {

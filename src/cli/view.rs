@@ -65,7 +65,7 @@ fn view(args: &Args) -> Result<(), Failure> {
     let mut opened = Some(gpu);
     let mut open = move || -> Result<_, gpu::Error> {
         let gpu = opened.take().map_or_else(|| device.open(), Ok)?;
-        Ok(gpu.map(|gpu| Arc::new(gpu.keeping_kernels())))
+        Ok(gpu.map(|gpu| Arc::new(gpu.keeping_kernels().interactive())))
     };
     std::thread::Builder::new().name("studio".into()).spawn(move || painter.run(&mut open)).map_err(no_thread)?;
     server.serve(studio).map_err(|error| Failure::new(OUTPUT, error.to_string()))

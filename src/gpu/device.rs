@@ -3,15 +3,17 @@
 use std::fmt;
 use std::str::FromStr;
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
 
 use serde::Serialize;
 
 use super::error::Error;
+use super::kernel_cache::KernelCache;
 use super::pipeline::{Specialisation, Stages, compile};
 use super::selftest::SelfTest;
 use super::shader::{Kernel, Module};
+use super::tuned::DeviceTuning;
 use crate::precision::Tier;
+use crate::tuning::Tuning;
 
 /// Which device renders.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -92,6 +94,15 @@ impl DeviceInfo {
         }
     }
 
+    /// Why the device cannot do with `tuning`; `None` where it can.
+    pub fn problem_with(&self, tuning: &Tuning) -> Option<String> {
+        let too_large = || {
+            let (wanted, most) = (tuning.workgroup, self.max_invocations);
+            (wanted > most).then(|| format!("workgroup is {wanted}, and the device has at most {most}"))
+        };
+        tuning.problem().or_else(too_large)
+    }
+
     fn matches(&self, text: &str) -> bool {
         let text = text.to_lowercase();
         self.pci.to_lowercase() == text || [&self.name, &self.driver].iter().any(|s| s.to_lowercase().contains(&text))
@@ -120,21 +131,18 @@ impl fmt::Display for DeviceInfo {
 pub struct Gpu {
     /// What it is.
     pub info: DeviceInfo,
+    /// What is tuned to it.
+    pub tuned: DeviceTuning,
     pub(super) device: wgpu::Device,
     pub(super) queue: wgpu::Queue,
     /// Whether host and device share memory, so that a storage buffer can be mapped.
     pub(super) mappable: bool,
-    /// About how long a dispatch should take.
-    pub(super) pace: Duration,
     failure: Arc<Mutex<Option<String>>>,
+    /// Those of earlier runs.
+    pub(super) kernel_cache: Option<KernelCache>,
     /// Compiled kernels that are used again; `None` where every renderer compiles its own.
     kept: Option<Mutex<Kept>>,
 }
-
-/// A dispatch should take about this long: long enough to hide its overhead, far below what loses a device.
-const PACE: Duration = Duration::from_millis(25);
-/// Likewise on software devices, which no watchdog guards and whose threads wait for each other at its end.
-const SOFTWARE_PACE: Duration = Duration::from_millis(100);
 
 /// Compiled kernels, those used last at the end.
 type Kept = Vec<(Specialisation, Arc<Stages>)>;
@@ -180,6 +188,10 @@ impl Gpu {
     fn open_adapter(info: DeviceInfo, adapter: &wgpu::Adapter) -> Result<Self, Error> {
         let shares_memory = matches!(info.kind, "software" | "integrated");
         let mut features = wgpu::Features::SHADER_F64 | wgpu::Features::SHADER_INT64 | wgpu::Features::TIMESTAMP_QUERY;
+        let keeps_kernels = KernelCache::is_wanted(info.kind);
+        if keeps_kernels {
+            features |= wgpu::Features::PIPELINE_CACHE;
+        }
         if shares_memory {
             features |= wgpu::Features::MAPPABLE_PRIMARY_BUFFERS;
         }
@@ -200,15 +212,34 @@ impl Gpu {
         let slot = Arc::clone(&failure);
         device.set_device_lost_callback(move |_, message| note(&slot, message));
         let mappable = features.contains(wgpu::Features::MAPPABLE_PRIMARY_BUFFERS);
-        let pace = if info.kind == "software" { SOFTWARE_PACE } else { PACE };
-        Ok(Self { info, device, queue, mappable, pace, failure, kept: None })
+        let tuned = DeviceTuning::of(&info);
+        let kernel_cache = keeps_kernels.then(|| KernelCache::open(&device, &adapter.get_info())).flatten();
+        Ok(Self { info, tuned, device, queue, mappable, failure, kernel_cache, kept: None })
     }
 
-    /// From now on renderers share the kernels that they compile, and no dispatch is long: for whoever renders many pictures,
-    /// measures no compilation and may change their mind.
+    /// Why compiled kernels of earlier runs are not used, where they could be.
+    pub fn kernel_cache_note(&self) -> Option<&str> {
+        self.kernel_cache.as_ref()?.note()
+    }
+
+    /// Renders with `tuning` from now on, which has to be one that [`DeviceInfo::problem_with`] has no objection to.
+    pub fn set_tuning(&mut self, tuning: Tuning) {
+        self.tuned.tuning = tuning;
+    }
+
+    /// From now on renderers share the kernels that they compile: for whoever renders many pictures and measures no
+    /// compilation.
     #[must_use]
     pub fn keeping_kernels(self) -> Self {
-        Self { kept: Some(Mutex::default()), pace: PACE, ..self }
+        Self { kept: Some(Mutex::default()), ..self }
+    }
+
+    /// From now on no dispatch is long: for whoever may change their mind.
+    #[must_use]
+    pub fn interactive(self) -> Self {
+        let mut tuned = self.tuned;
+        tuned.tuning = tuned.tuning.interactive();
+        Self { tuned, ..self }
     }
 
     /// The kernels of a picture, and whether another picture has used them before.
@@ -221,6 +252,7 @@ impl Gpu {
             return Ok((Arc::clone(&kept[kept.len() - 1].1), true));
         }
         let stages = Arc::new(compile(self, specialisation)?);
+        self.keep_compiled();
         if let Some(mut kept) = kept() {
             if kept.len() == MAX_KEPT {
                 kept.remove(0);

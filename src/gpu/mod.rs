@@ -2,8 +2,10 @@
 
 mod compute;
 mod device;
+pub mod drivers;
 mod echo;
 mod error;
+pub mod kernel_cache;
 pub mod layout;
 mod pack;
 mod pipeline;
@@ -13,6 +15,7 @@ mod render;
 mod selftest;
 mod shader;
 mod timestamps;
+mod tuned;
 mod upload;
 
 pub use device::{Choice, DeviceInfo, Gpu, list};
@@ -23,3 +26,4 @@ pub use probe::{Answer, Batch, ProbeRay, Prober, Question, RawBatch, Surface};
 pub use render::{DeviceTimes, GpuRenderer};
 pub use selftest::SelfTest;
 pub use shader::{Kernel, Module, Places, Storage};
+pub use tuned::DeviceTuning;

@@ -4,11 +4,13 @@ use std::num::NonZeroU32;
 
 use super::device::Gpu;
 use super::error::Error;
+use super::kernel_cache::KernelCache;
 use super::shader::{Kernel, Module, Places, Storage};
 use crate::accel::Acceleration;
 use crate::effects::{Effect, EffectSet, Effects};
 use crate::scene::Scene;
 use crate::settings::{Secondary, Settings, Specular};
+use crate::tuning::Tuning;
 
 /// Up to this many lights and their faces lie in uniform buffers: the array lengths in `shaders/lights_uniform.wgsl`, a sixth
 /// of that in `shaders/faces_uniform.wgsl`.
@@ -35,11 +37,13 @@ pub struct Specialisation {
     pub samples: u32,
     /// Whether each pixel also says how many rays it took.
     pub count_rays: bool,
+    /// Invocations of a workgroup of the kernels that are not over tiles.
+    pub workgroup: u32,
 }
 
 impl Specialisation {
     /// For `scene` with `effects` under `settings`.
-    pub fn new(scene: &Scene, settings: &Settings, effects: &Effects, kernel: Kernel) -> Self {
+    pub fn new(scene: &Scene, settings: &Settings, effects: &Effects, kernel: Kernel, tuning: &Tuning) -> Self {
         let lights = scene.lights.len();
         let storage = if lights <= MAX_UNIFORM_LIGHTS { Storage::Lights(lights as u32) } else { Storage::ManyLights };
         Self {
@@ -52,6 +56,7 @@ impl Specialisation {
             places: Places::Both,
             samples: settings.samples,
             count_rays: false,
+            workgroup: tuning.workgroup,
         }
     }
 
@@ -86,6 +91,7 @@ impl Specialisation {
             ("BLINN", f64::from(self.blinn)),
             ("SAMPLES", f64::from(self.samples)),
             ("COUNT_RAYS", f64::from(self.count_rays)),
+            ("GROUP", f64::from(self.workgroup)),
         ];
         if self.refraction.is_some() {
             constants.push(("SKIP_SELF_ALWAYS", f64::from(self.skip_self)));
@@ -195,23 +201,34 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
         None => common.extend([(12, ReadWrite), (18, WriteTexels), (19, Uniform)]),
     }
     let primary = [(4, Texels), (6, Uniform)];
-    let between = gpu.shader_module(&Module::between_stages())?;
-    let between = |entry_point| stage(gpu, &between, entry_point, &[], &[(12, ReadWrite), (16, ReadWrite)]);
-    let see = stage(gpu, &module, SEE_TILES, &constants, &[&common[..], &primary].concat())?;
-    let bounce = if specialisation.has_paths() {
-        let walk = stage(gpu, &module, WALK_PATHS, &constants, &[&common[..], &[(11, Texels)]].concat())?;
-        Some([between("begin_bounce")?, walk])
-    } else {
-        None
+    let kernel =
+        |entry_point, own: &[(u32, Access)]| stage(gpu, &module, entry_point, &constants, &[&common[..], own].concat());
+    let between = || {
+        let module = gpu.shader_module(&Module::between_stages())?;
+        let group = [("GROUP", f64::from(specialisation.workgroup))];
+        stage(gpu, &module, "begin_bounce", &group, &[(12, ReadWrite), (16, ReadWrite)])
     };
-    let resolve = if specialisation.samples > 1 {
+    let resolve = || {
         let module = gpu.shader_module(&Module::resolve(specialisation.kernel))?;
         let constants = [("SAMPLES", f64::from(specialisation.samples))];
-        Some(stage(gpu, &module, "resolve", &constants, &[(0, Uniform), (7, Read), (15, ReadWrite)])?)
-    } else {
-        None
+        stage(gpu, &module, "resolve", &constants, &[(0, Uniform), (7, Read), (15, ReadWrite)])
     };
-    Ok(Stages { see, bounce, resolve })
+    // A driver compiles a kernel on the thread that asks for it: side by side. The largest one goes here, since allocating is
+    // cheapest on the main thread.
+    std::thread::scope(|scope| {
+        let see = scope.spawn(|| kernel(SEE_TILES, &primary));
+        let bounce = specialisation.has_paths().then(|| {
+            let walk = kernel(WALK_PATHS, &[(11, Texels)])?;
+            Ok::<_, Error>([between()?, walk])
+        });
+        let resolve = (specialisation.samples > 1).then(resolve);
+        Ok(Stages { see: joined(see)?, bounce: bounce.transpose()?, resolve: resolve.transpose()? })
+    })
+}
+
+/// What a thread has compiled.
+fn joined<T>(thread: std::thread::ScopedJoinHandle<Result<T, Error>>) -> Result<T, Error> {
+    thread.join().unwrap_or_else(|_| Err(Error::Lost("compiling the kernels failed".into())))
 }
 
 fn stage(
@@ -260,7 +277,7 @@ fn stage(
                 constants,
                 zero_initialize_workgroup_memory: false,
             },
-            cache: None,
+            cache: gpu.kernel_cache.as_ref().map(KernelCache::handle),
         });
         Stage { pipeline, layout, bindings: bindings.iter().map(|(binding, _)| *binding).collect() }
     })

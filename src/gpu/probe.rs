@@ -264,6 +264,7 @@ impl<'a> Prober<'a> {
             storage: Storage::Ranges,
             places: Places::Large,
             count_rays: false,
+            workgroup: 64,
             samples: 1,
         };
         let pipeline = self.gpu.checked("compiling the probe", || {

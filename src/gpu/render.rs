@@ -14,7 +14,7 @@ use super::readable::Readable;
 use super::shader::{Kernel, Storage};
 use super::timestamps::Timestamps;
 use super::upload::{empty_texels, max_texels, upload, upload_texels};
-use crate::accel::{Acceleration, Cover, Rounding};
+use crate::accel::{Acceleration, Cover, Density, Rounding};
 use crate::camera::Camera;
 use crate::effects::{Effect, Effects};
 use crate::geometry::in_range;
@@ -25,8 +25,6 @@ use crate::tiles::TILE;
 
 /// Pixels of a tile.
 const TILE_PIXELS: usize = (TILE * TILE) as usize;
-/// Intersection tests of the first dispatch, before any is measured: some milliseconds on the slowest device seen.
-const FIRST_DISPATCH_TESTS: u64 = 4_000_000;
 /// Tiles of a dispatch at the most: they lie in a uniform buffer.
 const MAX_DISPATCH_TILES: u32 = 16_384;
 
@@ -60,8 +58,8 @@ pub struct GpuRenderer<'a> {
     width: u32,
     /// Samples of a pixel.
     samples: u64,
-    /// Number of tiles of the whole picture; no band has more.
-    picture_tiles: u64,
+    /// Tiles of the whole picture that any sphere may cover; no band has more.
+    covered_tiles: u64,
     background: [u8; 3],
     max_depth: u32,
     work: Option<Work>,
@@ -104,9 +102,6 @@ struct Work {
 /// Bytes of the shader's `Stage`.
 const STAGE_SIZE: u64 = 8;
 
-/// Invocations of a workgroup of the kernels that are not over tiles.
-const GROUP: u64 = 64;
-
 impl<'a> GpuRenderer<'a> {
     /// Prepares `scene` for `gpu`; the kernels are compiled when the first tile needs them.
     pub fn new(gpu: &'a Gpu, scene: &Scene, settings: &Settings, effects: &Effects, tier: Tier) -> Result<Self, Error> {
@@ -125,14 +120,22 @@ impl<'a> GpuRenderer<'a> {
     ) -> Result<Self, Error> {
         let (scene, settings) = in_range(scene, settings);
         let (scene, settings) = (scene.as_ref(), &settings);
-        let specialisation = Specialisation::new(scene, settings, effects, kernel);
+        let tuning = &gpu.tuned.tuning;
+        let specialisation = Specialisation::new(scene, settings, effects, kernel, tuning);
         let camera = Camera::new(scene, settings);
-        let accel = Acceleration::new(scene, &camera, specialisation.effects, rounding);
+        let lists = |density| Acceleration::with_density(scene, &camera, specialisation.effects, rounding, density);
+        let mut accel = lists(&tuning.density);
+        // Finer lists than those of the class must not keep a scene from fitting.
+        if tuning.density != Density::DEFAULT && too_large(&list_sizes(gpu, &list_contents(&accel))).is_some() {
+            accel = lists(&Density::DEFAULT);
+        }
         let specialisation = specialisation.with_lists(&accel);
         let packed = Packed::new(scene, settings, effects, kernel, &accel);
         let list_tables = list_contents(&accel);
         check_fits(gpu, &packed, &list_tables)?;
         let cover = accel.screen.cover();
+        let picture_tiles = u64::from(scene.width.div_ceil(TILE)) * u64::from(scene.height.div_ceil(TILE));
+        let covered_tiles = picture_tiles.min(cover.most());
         // The lists on the host go before the spheres take memory on the device.
         let [cells, entries] = &list_tables;
         let lists = [
@@ -150,13 +153,13 @@ impl<'a> GpuRenderer<'a> {
             * (1 + u64::from(effects.depth));
         // A tree of rays doubles with each bounce where rays can wait.
         let tests_per_pixel = tests_per_pixel.saturating_mul(1 << effects.waiting(scene).min(32));
-        let first = FIRST_DISPATCH_TESTS / tests_per_pixel.saturating_mul(TILE_PIXELS as u64);
+        let first = tuning.first_dispatch_tests as u64 / tests_per_pixel.saturating_mul(TILE_PIXELS as u64);
         Ok(Self {
             gpu,
             cover,
             width: scene.width,
             samples,
-            picture_tiles: u64::from(scene.width.div_ceil(TILE)) * u64::from(scene.height.div_ceil(TILE)),
+            covered_tiles,
             background: settings.quantize.levels(scene.background),
             max_depth: effects.depth,
             work: None,
@@ -243,9 +246,10 @@ impl<'a> GpuRenderer<'a> {
         let tile_bytes = TILE_PIXELS as u64 * self.samples * path.max(4);
         let bytes = MAX_PATH_BYTES.min(info.max_storage_binding).min(info.max_buffer);
         // Paths take a workgroup for so many of them.
-        let groups = u64::from(info.max_workgroups) * GROUP / (TILE_PIXELS as u64 * self.samples);
+        let groups =
+            u64::from(info.max_workgroups) * u64::from(specialisation.workgroup) / (TILE_PIXELS as u64 * self.samples);
         let limit = u64::from(MAX_DISPATCH_TILES.min(info.max_workgroups)).min(groups).min(bytes / tile_bytes);
-        self.picture_tiles.min(limit).max(1) as u32
+        self.covered_tiles.min(limit).max(1) as u32
     }
 
     fn dispatch(&mut self, work: &Work, tiles: &[[u32; 2]]) -> Result<Duration, Error> {
@@ -329,7 +333,8 @@ impl<'a> GpuRenderer<'a> {
 
     /// Sizes the next dispatch by the last one's time, growing by a factor of 4 at most.
     fn set_pace(&mut self, tiles: usize, took: Duration) {
-        let factor = (self.gpu.pace.as_secs_f64() / took.as_secs_f64().max(1e-9)).min(4.0);
+        let target = self.gpu.tuned.tuning.dispatch_ms * 1e-3;
+        let factor = (target / took.as_secs_f64().max(1e-9)).min(4.0);
         self.tiles_per_dispatch = ((tiles as f64 * factor) as u32).clamp(1, MAX_DISPATCH_TILES);
     }
 }
@@ -435,20 +440,30 @@ fn scene_resources(gpu: &Gpu, packed: &Packed, specialisation: &Specialisation) 
     Ok(resources)
 }
 
+/// What the tables of a scene take, each with what the device holds of its kind.
+type Sizes = Vec<(&'static str, usize, u64)>;
+
+fn list_sizes(gpu: &Gpu, [cells, entries]: &[Contents; 2]) -> Sizes {
+    vec![("cells with lists", cells.len(), max_texels(gpu, 8)), ("lists", entries.len(), max_texels(gpu, 4))]
+}
+
+/// The first that is too large.
+fn too_large(sizes: &Sizes) -> Option<&(&'static str, usize, u64)> {
+    sizes.iter().find(|(_, size, limit)| *size as u64 > *limit)
+}
+
 /// Refuses a scene whose tables are larger than the device's bindings and textures.
 fn check_fits(gpu: &Gpu, packed: &Packed, lists: &[Contents; 2]) -> Result<(), Error> {
     let buffer = gpu.info.max_storage_binding.min(gpu.info.max_buffer);
-    let table = |texel_size| max_texels(gpu, texel_size);
-    let [cells, entries] = lists;
-    let sizes = [
-        ("spheres", packed.materials.len(), table(16)),
+    let texels = max_texels(gpu, 16);
+    let mut sizes = list_sizes(gpu, lists);
+    sizes.extend([
+        ("spheres", packed.materials.len(), texels),
         ("lights", packed.lights.len(), buffer),
-        ("columns and rows", packed.window.len(), table(16)),
+        ("columns and rows", packed.window.len(), texels),
         ("faces around the lights", packed.faces.len(), buffer),
-        ("cells with lists", cells.len(), table(8)),
-        ("lists", entries.len(), table(4)),
-    ];
-    match sizes.iter().find(|(_, size, limit)| *size as u64 > *limit) {
+    ]);
+    match too_large(&sizes) {
         None => Ok(()),
         Some((what, size, limit)) => Err(Error::NoDevice(format!(
             "the {what} of this scene take {size} bytes, but {} holds {limit} at the most; `--device cpu` has no such limit",

@@ -7,6 +7,7 @@ use super::device::Gpu;
 use super::error::Error;
 use super::layout::single::Params;
 use super::shader::Module;
+use crate::cache;
 use serde::Serialize;
 
 /// Pairs that are transformed.
@@ -72,18 +73,9 @@ impl SelfTest {
 
 /// The file that stands for a pass of this device, driver and shader, in the user's cache folder.
 fn record_of_pass(gpu: &Gpu) -> Option<PathBuf> {
-    let cache = std::env::var_os("XDG_CACHE_HOME")
-        .map(PathBuf::from)
-        .filter(|path| path.is_absolute())
-        .or_else(|| Some(PathBuf::from(std::env::var_os("HOME")?).join(".cache")))?;
     let info = &gpu.info;
-    let text = Module::selftest().text;
-    // FNV-1a; a collision would need two drivers on one machine that differ in nothing else.
-    let hash = [&info.name, &info.driver, &info.pci, &text]
-        .iter()
-        .flat_map(|part| part.bytes().chain([0]))
-        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
-    Some(cache.join("trueray").join(format!("transforms-{hash:016x}")))
+    let key = cache::key(&[&info.name, &info.driver, &info.pci, &Module::selftest().text]);
+    Some(cache::folder()?.join(format!("transforms-{key}")))
 }
 
 /// Operands of all signs whose exponents differ by up to 40, from `SplitMix64` (Steele, Lea, Flood, "Fast splittable

@@ -11,6 +11,7 @@ mod bench;
 mod camera;
 mod cli;
 mod compare;
+mod drivers;
 mod effects;
 mod export;
 mod film;
@@ -24,5 +25,6 @@ mod shaders;
 mod stress;
 mod study;
 mod support;
+mod tuning;
 #[cfg(feature = "view")]
 mod view;

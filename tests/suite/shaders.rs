@@ -46,6 +46,7 @@ fn every_effect_set_is_valid() {
                     places,
                     samples: 1,
                     count_rays,
+                    workgroup: 64,
                 };
                 let constants = specialisation.constants().into_iter().map(|(name, value)| (name.to_owned(), value));
                 let constants = constants.collect();
@@ -73,6 +74,7 @@ fn every_constant_is_an_override_and_every_override_is_set() {
             places,
             samples: 2,
             count_rays: true,
+            workgroup: 64,
         };
         let mut set: Vec<_> = specialisation.constants().into_iter().map(|(name, _)| name.to_owned()).collect();
         declared.sort();

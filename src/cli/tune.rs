@@ -1,0 +1,66 @@
+//! `trueray bench --tune`.
+
+use std::path::Path;
+
+use super::failure::{Failure, OUTPUT, USAGE};
+use super::files::{command, save_json};
+use super::options::{DeviceOptions, PictureOptions, open_device};
+use super::output::out;
+use crate::bench::{TunePlan, tune};
+use crate::gpu::{Choice, Gpu};
+use crate::scene::Scene;
+use crate::tuning::save;
+
+/// Measures the candidates of every tuning number on the device, prints them, and keeps the best for later runs.
+pub(super) fn run_tune(
+    picture: &PictureOptions,
+    device: &DeviceOptions,
+    max_spheres: usize,
+    runs: usize,
+    json: Option<&Path>,
+) -> Result<(), Failure> {
+    let choice = match &device.device {
+        Choice::Cpu => {
+            return Err(Failure::new(USAGE, "--tune is for Vulkan devices; the CPU reference has no tuning"));
+        }
+        Choice::Auto => &Choice::Gpu,
+        choice => choice,
+    };
+    let mut gpu = open_device(choice)?.keeping_kernels();
+    let settings = picture.settings()?;
+    let plan = TunePlan {
+        max_spheres,
+        runs,
+        settings: &settings,
+        resolution: picture.resolution(),
+        choice: &|gpu: &Gpu, scene: &Scene| {
+            let effects = picture.effects(scene, &settings);
+            let tier = device.selection(Some(gpu), scene, &settings, &effects).tier;
+            (effects, tier)
+        },
+    };
+    let table_on_stdout = json != Some(Path::new("-"));
+    let show = |text: &str| {
+        if table_on_stdout {
+            out!("{text}");
+        }
+    };
+    show(&format!("{}: medians of {runs} runs a scene, compilation not counted\n", gpu.info));
+    let result = tune(&mut gpu, &plan, |knob| show(&knob.report()))?;
+    let file = save(&gpu.info.name, &gpu.info.driver, result.after)?;
+    let difference = result.after.difference(&result.before);
+    let found = if difference.is_empty() { "nothing is better than what the class has".into() } else { difference };
+    match &file {
+        Some(file) => show(&format!("{found}; kept in {}\n", file.display())),
+        None => show(&format!("{found}\n")),
+    }
+    if let Some(path) = json {
+        save_json(path, &serde_json::json!({ "command": command(), "tune": result, "file": file }))?;
+    }
+    match file {
+        Some(_) => Ok(()),
+        None => {
+            Err(Failure::new(OUTPUT, "there is no cache folder to keep it in: neither XDG_CACHE_HOME nor HOME is set"))
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! What is tuned to a class of devices: the one place for the numbers that decide how soon a picture is there, and never
+//! what it shows.
+
+mod kept;
+mod knobs;
+
+use serde::{Deserialize, Serialize};
+
+use crate::accel::Density;
+pub use kept::{IGNORE, Kept, Source, load, save};
+pub use knobs::{KNOBS, Knob};
+
+/// The numbers. Every combination within the limits of [`KNOBS`] gives the same picture, byte for byte.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Tuning {
+    /// Invocations of a workgroup of the kernel that is over paths, not over tiles.
+    pub workgroup: u32,
+    /// How fine the lists of spheres are.
+    pub density: Density,
+    /// How long a dispatch should take, in ms: long enough to hide its overhead, far below what loses a device.
+    pub dispatch_ms: f64,
+    /// Intersection tests of the first dispatch, before any is measured: some milliseconds on the slowest device of the
+    /// class.
+    pub first_dispatch_tests: f64,
+}
+
+/// A dispatch of which nobody notices that it cannot be interrupted.
+const INTERACTIVE_MS: f64 = 25.0;
+
+/// Devices that want the same numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Class {
+    /// A driver that calculates on the CPU, such as lavapipe.
+    Software,
+    /// A GPU that shares the CPU's memory.
+    Integrated,
+    /// A GPU with memory of its own, or one that is passed through to a virtual machine.
+    Discrete,
+}
+
+impl Class {
+    /// The class of a device whose type is called like this in `trueray devices`. What says nothing of itself is taken for
+    /// the slower kind of hardware.
+    pub fn of(kind: &str) -> Self {
+        match kind {
+            "software" => Self::Software,
+            "discrete" | "virtual" => Self::Discrete,
+            _ => Self::Integrated,
+        }
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Software => "software",
+            Self::Integrated => "integrated",
+            Self::Discrete => "discrete",
+        }
+    }
+}
+
+impl Tuning {
+    /// What a class of devices begins with. The numbers for software are measured, with lavapipe; hardware differs in what
+    /// its first dispatch can be trusted with, and `trueray bench --tune` finds the rest on the very device.
+    pub const fn of(class: Class) -> Self {
+        let software = Self {
+            workgroup: 64,
+            density: Density::DEFAULT,
+            // No watchdog guards them, and their threads wait for each other at the end of each.
+            dispatch_ms: 100.0,
+            first_dispatch_tests: 4e6,
+        };
+        let hardware = Self { dispatch_ms: INTERACTIVE_MS, ..software };
+        match class {
+            Class::Software => software,
+            Class::Integrated => Self { first_dispatch_tests: 16e6, ..hardware },
+            Class::Discrete => Self { first_dispatch_tests: 64e6, ..hardware },
+        }
+    }
+
+    /// With dispatches short enough for someone who may change their mind.
+    pub(crate) fn interactive(self) -> Self {
+        Self { dispatch_ms: self.dispatch_ms.min(INTERACTIVE_MS), ..self }
+    }
+
+    /// The first number that is out of its limits, in words.
+    pub fn problem(&self) -> Option<String> {
+        KNOBS.iter().find_map(|knob| {
+            let value = (knob.get)(self);
+            let [least, greatest] = knob.limits;
+            let fits = value >= least && value <= greatest;
+            (!fits).then(|| format!("{} is {value}, not from {least} to {greatest}", knob.name))
+        })
+    }
+
+    /// How this differs from `other`, a number after the other; empty where it does not.
+    pub fn difference(&self, other: &Self) -> String {
+        let differing = KNOBS.iter().filter(|knob| (knob.get)(self) != (knob.get)(other));
+        let words: Vec<_> = differing.map(|knob| format!("{} {}", knob.name, (knob.get)(self))).collect();
+        words.join(", ")
+    }
+}
