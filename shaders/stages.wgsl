@@ -29,12 +29,10 @@ fn keep_hit(path: u32, hit: Hit) {
     stage.hits[at] = vec2<u32>(path, hit.sphere | select(0u, INSIDE, hit.inside));
 }
 
-// The primary ray of a slot: samples row by row in the pixels of a tile, these row by row.
+// The primary ray of a slot: the samples of a pixel row by row; pixel_of is in slots_*.wgsl.
 fn ray_through(slot: u32) -> Ray {
-    let in_tile = (slot / (SAMPLES * SAMPLES)) % 64u;
     let sample = slot % (SAMPLES * SAMPLES);
-    let pixel = tiles[slot / (64u * SAMPLES * SAMPLES)] + vec2(in_tile % 8u, in_tile / 8u);
-    return primary_ray(pixel * SAMPLES + vec2(sample % SAMPLES, sample / SAMPLES));
+    return primary_ray(pixel_of(slot) * SAMPLES + vec2(sample % SAMPLES, sample / SAMPLES));
 }
 
 // One workgroup casts the primary rays of one tile.

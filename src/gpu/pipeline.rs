@@ -4,7 +4,7 @@ use std::num::NonZeroU32;
 
 use super::device::Gpu;
 use super::error::Error;
-use super::shader::{Kernel, Module, Storage};
+use super::shader::{Kernel, Module, Slots, Storage};
 use crate::effects::{Effect, EffectSet, Effects};
 use crate::scene::Scene;
 use crate::settings::{Secondary, Settings, Specular};
@@ -33,6 +33,8 @@ pub struct Specialisation {
     pub storage: Storage,
     /// Side of the grid of samples in a pixel.
     pub samples: u32,
+    /// Which pixels a dispatch renders.
+    pub slots: Slots,
     /// Whether each pixel also says how many rays it took.
     pub count_rays: bool,
 }
@@ -56,6 +58,7 @@ impl Specialisation {
             blinn: settings.specular == Specular::Blinn,
             storage,
             samples: settings.samples,
+            slots: Slots::Tiles,
             count_rays: false,
         }
     }
@@ -103,12 +106,14 @@ impl Specialisation {
 
     /// The module that renders.
     pub fn module(&self) -> Module {
-        Module::render(self.kernel, self.storage, self.samples > 1, self.refraction)
+        Module::render_slots(self.kernel, self.storage, self.samples > 1, self.refraction, self.slots)
     }
 }
 
 /// The entry point that casts the primary rays of tiles.
 pub const SEE_TILES: &str = "see_tiles";
+/// The entry point that casts the primary rays of a list of pixels.
+pub const SEE_SAMPLES: &str = "see_samples";
 /// The entry point that shades hits.
 pub const SHADE_HITS: &str = "shade_hits";
 /// The entry point that casts the reflection rays of paths.
@@ -183,7 +188,11 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
     }
     let between = gpu.shader_module(&Module::between_stages())?;
     let between = |entry_point| stage(gpu, &between, entry_point, &[], &[(12, ReadWrite), (16, ReadWrite)]);
-    let see = stage(gpu, &module, SEE_TILES, &constants, &[&common[..], &primary].concat())?;
+    let see_entry = match specialisation.slots {
+        Slots::Tiles => SEE_TILES,
+        Slots::List => SEE_SAMPLES,
+    };
+    let see = stage(gpu, &module, see_entry, &constants, &[&common[..], &primary].concat())?;
     let begin_shading = between("begin_shading")?;
     let shade = stage(gpu, &module, SHADE_HITS, &constants, &[&common[..], &primary, &shading].concat())?;
     let bounce = if specialisation.has_paths() {

@@ -1,5 +1,7 @@
 //! Rows of pixels from the device: tiles in dispatches that stay short, read back and put in place.
 
+mod list;
+
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -10,7 +12,7 @@ use super::error::Error;
 use super::pack::{Contents, Packed, list_contents};
 use super::pipeline::{MAX_FEW, MAX_UNIFORM_LIGHTS, Specialisation, Stage, Stages};
 use super::readable::Readable;
-use super::shader::{Kernel, Storage};
+use super::shader::{Kernel, Slots, Storage};
 use super::timestamps::Timestamps;
 use super::upload::upload;
 use crate::accel::{Acceleration, Cover, Rounding};
@@ -49,7 +51,7 @@ pub struct DeviceTimes {
     pub longest_dispatch: Duration,
     /// Number of dispatches.
     pub dispatches: u64,
-    /// Tiles rendered.
+    /// Tiles rendered, or as many pixels of lists.
     pub tiles: u64,
 }
 
@@ -72,6 +74,8 @@ pub struct GpuRenderer<'a> {
     timestamps: Option<Timestamps>,
     /// Shadow and reflection rays so far, where they are counted.
     rays: [u64; 2],
+    /// Pixels rendered of lists.
+    listed: u64,
 }
 
 /// Everything that is needed to build the kernels once a tile asks for them.
@@ -160,6 +164,7 @@ impl<'a> GpuRenderer<'a> {
             times: DeviceTimes::default(),
             timestamps: None,
             rays: [0; 2],
+            listed: 0,
         })
     }
 
@@ -181,7 +186,11 @@ impl<'a> GpuRenderer<'a> {
 
     /// Primary, shadow and reflection rays so far; `None` where they are not counted.
     pub fn rays(&self) -> Option<[u64; 3]> {
-        let primary = self.times.tiles * TILE_PIXELS as u64 * self.samples;
+        let pixels = match self.inputs.specialisation.slots {
+            Slots::Tiles => self.times.tiles * TILE_PIXELS as u64,
+            Slots::List => self.listed,
+        };
+        let primary = pixels * self.samples;
         self.inputs.specialisation.count_rays.then_some([primary, self.rays[0], self.rays[1]])
     }
 
@@ -204,7 +213,7 @@ impl<'a> GpuRenderer<'a> {
             let (now, later) = rest.split_at(rest.len().min(work.capacity.min(self.tiles_per_dispatch) as usize));
             let took = self.dispatch(&work, now)?;
             not_finite += self.read_back(&work, now, first, rgb)?;
-            self.add_rays(&work, now.len())?;
+            self.add_rays(&work, now.len() * TILE_PIXELS)?;
             self.work = Some(work);
             self.set_pace(now.len(), took);
             rest = later;
@@ -240,6 +249,14 @@ impl<'a> GpuRenderer<'a> {
         self.picture_tiles.min(limit).max(1) as u32
     }
 
+    /// The workgroups over so many tiles, or pixels of a list.
+    fn workgroups(&self, places: usize) -> u32 {
+        match self.inputs.specialisation.slots {
+            Slots::Tiles => places as u32,
+            Slots::List => places.div_ceil(TILE_PIXELS) as u32,
+        }
+    }
+
     fn dispatch(&mut self, work: &Work, tiles: &[[u32; 2]]) -> Result<Duration, Error> {
         let start = Instant::now();
         self.submit(work, tiles)?;
@@ -250,13 +267,17 @@ impl<'a> GpuRenderer<'a> {
         }
         self.times.longest_dispatch = self.times.longest_dispatch.max(took);
         self.times.dispatches += 1;
-        self.times.tiles += tiles.len() as u64;
+        self.times.tiles += u64::from(self.workgroups(tiles.len()));
         Ok(took)
     }
 
     /// Runs all stages over `tiles` and waits for them.
     fn submit(&self, work: &Work, tiles: &[[u32; 2]]) -> Result<(), Error> {
         self.gpu.queue.write_buffer(&work.tiles, 0, bytemuck::cast_slice(tiles));
+        if self.inputs.specialisation.slots == Slots::List {
+            let padding = list::padding(tiles.len());
+            self.gpu.queue.write_buffer(&work.tiles, tiles.len() as u64 * 8, bytemuck::cast_slice(&padding));
+        }
         // The first stage's paths go into the first half.
         let half = work.capacity * TILE_PIXELS as u32 * self.samples as u32;
         self.gpu.queue.write_buffer(&work.stage, 0, bytemuck::cast_slice(&[half, 0, 0, 0, 0, 0, 0]));
@@ -274,7 +295,7 @@ impl<'a> GpuRenderer<'a> {
                     None => pass.dispatch_workgroups_indirect(&work.workgroups, 0),
                 }
             };
-            let tiles = Some(tiles.len() as u32);
+            let tiles = Some(self.workgroups(tiles.len()));
             let stages = &work.stages;
             run(&stages.see, &work.see_group, tiles);
             run(&stages.begin_shading, &work.between_group, Some(1));
@@ -308,13 +329,13 @@ impl<'a> GpuRenderer<'a> {
         Ok(not_finite)
     }
 
-    /// Adds up the ray counts of the last dispatch of so many tiles.
-    fn add_rays(&mut self, work: &Work, tiles: usize) -> Result<(), Error> {
+    /// Adds up the ray counts of the last dispatch of so many pixels.
+    fn add_rays(&mut self, work: &Work, pixels: usize) -> Result<(), Error> {
         if self.inputs.specialisation.count_rays {
             let sum = |counts: &[u32]| {
                 counts.iter().fold([0, 0], |[s, r], count| [s + u64::from(count & 0xffff), r + u64::from(count >> 16)])
             };
-            let values = tiles * TILE_PIXELS * self.samples as usize;
+            let values = pixels * self.samples as usize;
             let [shadow, reflection] = work.ray_counts.read(self.gpu, values, sum)?;
             self.rays = [self.rays[0] + shadow, self.rays[1] + reflection];
         }
@@ -349,7 +370,11 @@ impl Work {
         let paths = if specialisation.has_paths() { 2 * slots * path_size } else { path_size };
         let color_size = if specialisation.kernel.is_double() { 32 } else { 16 };
         let paths = empty(paths, storage);
-        let tiles = empty(u64::from(capacity) * 8, storage | wgpu::BufferUsages::COPY_DST);
+        let places = match specialisation.slots {
+            Slots::Tiles => u64::from(capacity),
+            Slots::List => pixel_count,
+        };
+        let tiles = empty(places * 8, storage | wgpu::BufferUsages::COPY_DST);
         let stage = empty(STAGE_HEAD + 8 * slots, storage | wgpu::BufferUsages::COPY_DST);
         let workgroups = empty(12, storage | wgpu::BufferUsages::INDIRECT);
         let colors = stages.resolve.as_ref().map(|_| empty(slots * color_size, storage));

@@ -6,6 +6,7 @@ use std::num::NonZeroU32;
 
 use crate::accel::Rounding;
 use crate::precision::Tier;
+use crate::sampling::Fill;
 
 /// One file of `shaders/`, or a line from the host.
 #[derive(Debug, Clone)]
@@ -90,6 +91,15 @@ pub enum Storage {
     Ranges,
 }
 
+/// Which pixels a dispatch renders.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Slots {
+    /// All of each tile.
+    Tiles,
+    /// Those of a list.
+    List,
+}
+
 /// The scalar of the kernel and what the host packs.
 fn data_parts(kernel: Kernel, storage: Storage) -> Vec<Part> {
     let barrier = if kernel == Kernel::NoBarrier { part!("barrier_none.wgsl") } else { part!("barrier.wgsl") };
@@ -154,10 +164,25 @@ impl Module {
     /// The module that renders with `kernel`, one sample a pixel or several; where something refracts, with room for so many
     /// rays that wait.
     pub fn render(kernel: Kernel, storage: Storage, samples: bool, refraction: Option<NonZeroU32>) -> Self {
+        Self::render_slots(kernel, storage, samples, refraction, Slots::Tiles)
+    }
+
+    /// Likewise, for dispatches over tiles or over lists of pixels.
+    pub fn render_slots(
+        kernel: Kernel,
+        storage: Storage,
+        samples: bool,
+        refraction: Option<NonZeroU32>,
+        slots: Slots,
+    ) -> Self {
         let mut parts = intersection_parts(kernel, storage);
         parts.extend([part!("film.wgsl"), part!("quantize.wgsl")]);
         parts.push(if samples { part!("film_samples.wgsl") } else { part!("film_pixels.wgsl") });
         parts.extend([part!("shade.wgsl"), part!("reflect.wgsl"), part!("stages.wgsl")]);
+        parts.push(match slots {
+            Slots::Tiles => part!("slots_tiles.wgsl"),
+            Slots::List => part!("slots_list.wgsl"),
+        });
         if let Some(waiting) = refraction {
             // Only workgroup arrays may take their size from a constant of the pipeline.
             let text = format!("const MAX_WAITING: u32 = {waiting}u;\n").into();
@@ -180,6 +205,20 @@ impl Module {
         parts.extend(data_parts(kernel, Storage::Many));
         parts.extend([part!("quantize.wgsl"), part!("resolve.wgsl")]);
         Self::join(parts)
+    }
+
+    /// The module that finds each pixel's nearest sample.
+    pub fn flood() -> Self {
+        Self::join(vec![part!("flood.wgsl"), part!("flood_jump.wgsl")])
+    }
+
+    /// The module that fills pixels without a sample.
+    pub fn fill(fill: Fill) -> Self {
+        let filled = match fill {
+            Fill::Nearest => part!("fill_nearest.wgsl"),
+            Fill::Smooth => part!("fill_smooth.wgsl"),
+        };
+        Self::join(vec![part!("flood.wgsl"), part!("fill.wgsl"), filled])
     }
 
     /// The module that tries error-free transforms.

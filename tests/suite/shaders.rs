@@ -6,7 +6,9 @@ use trueray::accel::Acceleration;
 use trueray::camera::Camera;
 use trueray::effects::{Effect, EffectSet, Effects, Request};
 use trueray::gpu::layout::{double, single};
-use trueray::gpu::{Kernel, Module, SEE_TILES, SHADE_HITS, SelfTest, Specialisation, Storage, WALK_PATHS, echo_layout};
+use trueray::gpu::{
+    Kernel, Module, SEE_TILES, SHADE_HITS, SelfTest, Slots, Specialisation, Storage, WALK_PATHS, echo_layout,
+};
 
 use trueray::precision::Tier;
 use trueray::settings::Settings;
@@ -43,6 +45,7 @@ fn every_effect_set_is_valid() {
                     blinn,
                     storage,
                     samples: 1,
+                    slots: Slots::Tiles,
                     count_rays,
                 };
                 let constants = specialisation.constants().into_iter().map(|(name, value)| (name.to_owned(), value));
@@ -69,6 +72,7 @@ fn every_constant_is_an_override_and_every_override_is_set() {
             blinn: true,
             storage,
             samples: 2,
+            slots: Slots::Tiles,
             count_rays: true,
         };
         let mut set: Vec<_> = specialisation.constants().into_iter().map(|(name, _)| name.to_owned()).collect();
