@@ -11,13 +11,13 @@ pub(super) struct SamplingOptions {
     #[arg(long, value_name = "center|X,Y", value_parser = place, group = "partial")]
     foveate: Option<Place>,
     /// How far all pixels are sampled, in parts of the picture's shorter side
-    #[arg(long, value_name = "R", default_value_t = 0.15, value_parser = radius, requires = "foveate")]
+    #[arg(long, value_name = "R", default_value_t = 0.15, value_parser = radius, requires = "foveate", conflicts_with = "sparse")]
     fovea_radius: f64,
     /// How far beyond that a quarter of them is, likewise
-    #[arg(long, value_name = "F", default_value_t = 0.15, value_parser = falloff, requires = "foveate")]
+    #[arg(long, value_name = "F", default_value_t = 0.15, value_parser = falloff, requires = "foveate", conflicts_with = "sparse")]
     falloff: f64,
     /// The part of the pixels that is sampled far away from the place, above 0
-    #[arg(long, value_name = "D", default_value_t = 0.0625, value_parser = density, requires = "foveate")]
+    #[arg(long, value_name = "D", default_value_t = 0.0625, value_parser = density, requires = "foveate", conflicts_with = "sparse")]
     density: f64,
     /// Sample this part of the pixels, evenly, above 0
     #[arg(long, value_name = "D", value_parser = density, group = "partial")]

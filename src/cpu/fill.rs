@@ -31,8 +31,8 @@ fn nearer(pixel: [i32; 2], known: u32, other: u32) -> u32 {
 /// The neighbours that a jump looks at, in this order.
 const NEIGHBOURS: [[i32; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];
 
-/// Where the nearest sample of each pixel lies, packed, pixels in reading order: as far as jump flooding finds it, which errs
-/// for a few pixels between samples that are almost equally near.
+/// Where the nearest sample of each pixel lies, packed, pixels in reading order. Jump flooding may miss the nearest where several
+/// are almost equally near; between samples as even as these, tests find no such pixel.
 pub fn nearest_samples(samples: &Samples) -> Vec<u32> {
     let (width, height) = samples.size;
     let across = width as usize;

@@ -131,9 +131,8 @@ fn pipeline(gpu: &Gpu, module: &Module, entry_point: &str) -> Result<wgpu::Compu
 /// Binds buffers in the order of their bindings.
 fn bind(gpu: &Gpu, pipeline: &wgpu::ComputePipeline, buffers: &[&wgpu::Buffer]) -> wgpu::BindGroup {
     let bound = (0..).zip(buffers);
-    let entries: Vec<_> = bound
-        .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
-        .collect();
+    let entries: Vec<_> =
+        bound.map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() }).collect();
     let layout = pipeline.get_bind_group_layout(0);
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries })
 }

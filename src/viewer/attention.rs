@@ -77,8 +77,7 @@ impl Attention {
     /// Number of ever cheaper maps.
     pub(super) fn levels(&self) -> usize {
         match self.economy {
-            Economy::Foveated => 5,
-            Economy::Sparse => 4,
+            Economy::Foveated | Economy::Sparse => 4,
             Economy::Coarse => 0,
         }
     }
@@ -86,20 +85,17 @@ impl Attention {
     /// The map at a level, 0 being the densest.
     pub(super) fn density(&self, level: usize, size: (u32, u32)) -> Density {
         // From half of the pixels, or less, to the least in equal ratios.
-        let part = |steps: usize, level: usize| {
-            let [most, least] = [self.least.max(0.5), self.least];
-            let ratio = level.min(steps) as f64 / steps as f64;
-            most.powf(1.0 - ratio) * least.powf(ratio)
-        };
+        let ratio = level.min(3) as f64 / 3.0;
+        let part = self.least.max(0.5).powf(1.0 - ratio) * self.least.powf(ratio);
         if self.economy != Economy::Foveated {
-            return Density::sparse(part(3, level));
+            return Density::sparse(part);
         }
         let unit = f64::from(size.0.min(size.1));
-        // In the end the fovea shrinks as well.
-        let scale = [1.0, 1.0, 1.0, 0.5, 0.25][level.min(4)];
+        // The fovea shrinks as well, and in the end more than the density falls elsewhere.
+        let scale = [1.0, 1.0, 0.6, 0.3][level.min(3)];
         let [radius, falloff] = self.fovea.map(|part| part * unit * scale);
         let center = [self.gaze[0] * f64::from(size.0), self.gaze[1] * f64::from(size.1)].map(f64::round);
-        Density { fovea: Some(Fovea { center, radius, falloff }), far: part(2, level) }
+        Density { fovea: Some(Fovea { center, radius, falloff }), far: part }
     }
 }
 

@@ -22,7 +22,7 @@ mod wishes;
 pub use attention::{Attention, Economy};
 pub use canvas::Canvas;
 pub use desk::{Bell, Desk, MAX_UNACKNOWLEDGED, Outgoing};
-pub use places::{PLACES, Places, SAMPLES, SampleColors};
+pub use places::{PLACES, Places, SAMPLES, SLOTS, SampleColors};
 pub use pose::{Pose, Range};
 pub use protocol::{FromPage, PATCH, PICTURE_FILE, Patch, Rectangle};
 pub use server::{Access, Server};

@@ -1,16 +1,20 @@
 //! Pictures of samples on their way to the page, which shows each pixel as its nearest sample.
 //!
 //! [`PLACES`] says, once for many pictures, which sample a pixel shows: in little-endian `u32`s [`PLACES`], its number, the
-//! picture's width and height, and the number of samples; then for each pixel in reading order how many columns to the right
-//! and how many rows down its nearest sample lies, a signed byte each. Samples are the pixels where both are 0.
+//! picture's width and height, the number of samples, and the slot that the page keeps all this in, below [`SLOTS`]; then for
+//! each pixel in reading order how many columns to the right and how many rows down its nearest sample lies, a signed byte
+//! each. Samples are the pixels where both are 0.
 //!
-//! [`SAMPLES`] is one picture: [`SAMPLES`], its number, width and height, the number of samples; then the colour of each in
-//! reading order, 3 bytes.
+//! [`SAMPLES`] is one picture: [`SAMPLES`], its number, width and height, the number of samples, the slot with their places;
+//! then the colour of each in reading order, 3 bytes.
 
 /// First word of a message with the places of samples.
 pub const PLACES: u32 = 3;
 /// First word of a message with the colours of samples.
 pub const SAMPLES: u32 = 4;
+
+/// How many places a page keeps at the most.
+pub const SLOTS: u32 = 4;
 
 /// Which sample each pixel shows.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -51,8 +55,8 @@ impl Places {
     }
 
     /// The message; its number is written by whoever sends it.
-    pub fn encode(&self) -> Vec<u8> {
-        let mut message = head([PLACES, 0, self.size.0, self.size.1, self.count], 2 * self.ways.len());
+    pub fn encode(&self, slot: u32) -> Vec<u8> {
+        let mut message = head([PLACES, 0, self.size.0, self.size.1, self.count, slot], 2 * self.ways.len());
         message.extend_from_slice(bytemuck::cast_slice(&self.ways));
         message
     }
@@ -60,16 +64,16 @@ impl Places {
 
 impl SampleColors {
     /// The message; its number is written by whoever sends it.
-    pub fn encode(&self) -> Vec<u8> {
+    pub fn encode(&self, slot: u32) -> Vec<u8> {
         let count = (self.rgb.len() / 3) as u32;
-        let mut message = head([SAMPLES, 0, self.size.0, self.size.1, count], self.rgb.len());
+        let mut message = head([SAMPLES, 0, self.size.0, self.size.1, count, slot], self.rgb.len());
         message.extend_from_slice(&self.rgb);
         message
     }
 }
 
-fn head(words: [u32; 5], rest: usize) -> Vec<u8> {
-    let mut message = Vec::with_capacity(20 + rest);
+fn head(words: [u32; 6], rest: usize) -> Vec<u8> {
+    let mut message = Vec::with_capacity(4 * words.len() + rest);
     message.extend(words.iter().flat_map(|word| word.to_le_bytes()));
     message
 }

@@ -100,31 +100,20 @@ fn distance_squared(a: [u32; 2], b: [u32; 2]) -> u64 {
     (0..2).map(|axis| u64::from(a[axis].abs_diff(b[axis])).pow(2)).sum()
 }
 
-/// Every pixel has a sample, hardly ever one that is not the nearest, and never one much farther away.
+/// Jump flooding may err in general; with these maps it does not.
 #[test]
 fn jump_flooding_finds_nearest_samples() {
-    let (mut wrong, mut pixels) = (0_u32, 0_u32);
     for size in SIZES {
         for density in densities(size) {
             let samples = Samples::new(size, &density);
-            let owners = nearest_samples(&samples);
-            for (index, owner) in owners.into_iter().enumerate() {
+            for (index, owner) in nearest_samples(&samples).into_iter().enumerate() {
                 let pixel = [index as u32 % size.0, index as u32 / size.0];
-                let found = [owner & 0xffff, owner >> 16];
-                let key = |sample: &[u32; 2]| (distance_squared(pixel, *sample), packed(*sample));
-                let best = *samples.pixels.iter().min_by_key(|sample| key(sample)).unwrap();
-                assert!(samples.pixels.contains(&found), "{pixel:?} has {found:?} of {density:?} at {size:?}");
-                pixels += 1;
-                if found != best {
-                    wrong += 1;
-                    let [a, b] = [found, best].map(|sample| (distance_squared(pixel, sample) as f64).sqrt());
-                    assert!(a <= b + 1.0, "{pixel:?} has {found:?}, not {best:?}, of {density:?} at {size:?}");
-                }
+                let key = |sample: &&[u32; 2]| (distance_squared(pixel, **sample), packed(**sample));
+                let best = *samples.pixels.iter().min_by_key(key).unwrap();
+                assert_eq!([owner & 0xffff, owner >> 16], best, "{pixel:?} of {density:?} at {size:?}");
             }
         }
     }
-    println!("{wrong} of {pixels}");
-    assert!(wrong * 1000 <= pixels, "{wrong} of {pixels}");
 }
 
 /// A colour for each sample.
@@ -209,11 +198,11 @@ fn sampled_pixels_are_those_of_the_full_picture() {
         for &backend in &backends {
             let engine = || Engine::new(backend, &scene, &settings, &effects).unwrap();
             let (full, _) = render_picture(&mut engine(), &scene).unwrap();
+            let mut in_part = engine();
+            in_part.take_lists();
             for density in [Density::FULL, Density::sparse(0.13), foveated([40.0, 30.0], 10.0, 12.0, 0.03)] {
                 let samples = Samples::new(size, &density);
-                let mut engine = engine();
-                engine.take_lists();
-                let rgb = render_partial(&mut engine, backend, &samples, Fill::Smooth, |_| ()).unwrap().rgb;
+                let rgb = render_partial(&mut in_part, backend, &samples, Fill::Smooth, |_| ()).unwrap().rgb;
                 for &[x, y] in &samples.pixels {
                     let at = (y as usize * size.0 as usize + x as usize) * 3;
                     assert_eq!(rgb[at..at + 3], full[at..at + 3], "({x}, {y}) of {density:?} on {backend:?}");

@@ -121,12 +121,12 @@ fn places_and_samples_are_as_documented() {
     let last = 1 << 16 | 2;
     let places = Places::new((3, 2), &[0, 0, last, 0, last, last]);
     assert!(places.fits);
-    let message = places.encode();
-    let words: Vec<u32> = message[..20].as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word)).collect();
-    assert_eq!(words, [PLACES, 0, 3, 2, 2]);
-    assert_eq!(message[20..], [0, 0, 255, 0, 0, 1, 0, 255, 1, 0, 0, 0]);
+    let message = places.encode(3);
+    let words: Vec<u32> = message[..24].as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word)).collect();
+    assert_eq!(words, [PLACES, 0, 3, 2, 2, 3]);
+    assert_eq!(message[24..], [0, 0, 255, 0, 0, 1, 0, 255, 1, 0, 0, 0]);
     assert!(!Places::new((300, 1), &[299; 300]).fits);
-    let message = SampleColors { size: (3, 2), rgb: vec![1, 2, 3, 4, 5, 6] }.encode();
+    let message = SampleColors { size: (3, 2), rgb: vec![1, 2, 3, 4, 5, 6] }.encode(1);
     assert_eq!(message[..4], SAMPLES.to_le_bytes());
-    assert_eq!(message[20..], [1, 2, 3, 4, 5, 6]);
+    assert_eq!(message[24..], [1, 2, 3, 4, 5, 6]);
 }

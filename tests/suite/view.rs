@@ -79,6 +79,7 @@ impl Work {
             studio: Arc::clone(&self.studio),
             size: (0, 0),
             rgb: Vec::new(),
+            places: std::array::from_fn(|_| Vec::new()),
             ways: Vec::new(),
             sketches: 0,
         }
@@ -104,7 +105,9 @@ pub(crate) struct Page {
     studio: Arc<Studio>,
     pub(crate) size: (u32, u32),
     pub(crate) rgb: Vec<u8>,
-    /// The way from each pixel to its nearest sample.
+    /// Of each slot, the way from each pixel to its nearest sample.
+    places: [Vec<[i8; 2]>; SLOTS as usize],
+    /// Those of the last picture of samples.
     pub(crate) ways: Vec<[i8; 2]>,
     /// Pictures of samples so far.
     pub(crate) sketches: u32,
@@ -135,7 +138,7 @@ impl Page {
             Outgoing::Bytes(bytes) => {
                 match u32::from_le_bytes(bytes[..4].try_into().unwrap()) {
                     PLACES => {
-                        self.ways = bytes[20..].as_chunks::<2>().0.iter().map(|way| way.map(u8::cast_signed)).collect()
+                        self.ways = bytes[24..].as_chunks::<2>().0.iter().map(|way| way.map(u8::cast_signed)).collect()
                     }
                     SAMPLES => self.draw_samples(&bytes),
                     _ => {
@@ -178,15 +181,16 @@ impl Page {
         let word = |index: usize| u32::from_le_bytes(message[4 * index..][..4].try_into().unwrap());
         self.size = (word(2), word(3));
         let width = self.size.0 as usize;
+        self.ways.clone_from(&self.places[word(5) as usize]);
         assert_eq!(self.ways.len(), width * self.size.1 as usize);
-        let mut samples = message[20..].as_chunks::<3>().0.iter();
+        let mut samples = message[24..].as_chunks::<3>().0.iter();
         let mut pixels = vec![[0; 3]; self.ways.len()];
         for (pixel, way) in pixels.iter_mut().zip(&self.ways) {
             if *way == [0, 0] {
                 *pixel = *samples.next().unwrap();
             }
         }
-        assert_eq!((samples.next(), word(4) as usize), (None, message[20..].len() / 3));
+        assert_eq!((samples.next(), word(4) as usize), (None, message[24..].len() / 3));
         let source = |(index, [dx, dy]): (usize, &[i8; 2])| {
             pixels[(index as isize + isize::from(*dx) + isize::from(*dy) * width as isize) as usize]
         };

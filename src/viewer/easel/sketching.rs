@@ -112,39 +112,34 @@ impl<'g> Easel<'g> {
         Ok(true)
     }
 
-    /// While nothing else is to be done, makes the map for the next moving picture and tells the page.
+    /// While nothing else is to be done, makes a map for moving pictures to come, and tells the page of the next one.
     pub(super) fn prepare_sketch(&mut self) -> Result<(), gpu::Error> {
         let Some(subject) = &self.subject else { return Ok(()) };
         let (size, tier) = (subject.size, subject.selection.tier);
         let backend = self.gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, tier));
         let attention = self.desk.attention();
-        if let Some(plan) = self.sketcher.plan(backend, &attention, size, FRAME)? {
-            self.tell_places(&plan);
+        if let Some(density) = self.sketcher.missing(&attention, size) {
+            self.sketcher.make(backend, density, size)?;
         }
         Ok(())
     }
 
-    /// Whether the page shows all there is to show, and the next moving picture lacks its map.
+    /// Whether the page shows all there is to show, and there is time to prepare moving pictures.
     pub(super) fn lacks_sketch(&self) -> bool {
         let Some(subject) = &self.subject else { return false };
         let moves_in_part = self.pace.measured && self.pace.step(subject.size, FRAME) > 1;
         moves_in_part
             && self.trouble.is_none()
             && self.finished()
-            && !self.sketcher.is_ready(&self.desk.attention(), subject.size)
+            && self.sketcher.missing(&self.desk.attention(), subject.size).is_some()
     }
 
     fn show_samples(&mut self, plan: &Arc<Plan>, colors: &[[u8; 3]]) {
-        self.tell_places(plan);
-        self.canvas.hide();
-        self.desk.send_bytes(plan.message(colors).encode());
-    }
-
-    fn tell_places(&mut self, plan: &Arc<Plan>) {
-        if !self.sketcher.told.as_ref().is_some_and(|told| Arc::ptr_eq(told, plan)) {
-            self.desk.send_bytes(plan.places.encode());
-            self.sketcher.told = Some(Arc::clone(plan));
+        if let Some(places) = self.sketcher.to_tell(plan) {
+            self.desk.send_bytes(places);
         }
+        self.canvas.hide();
+        self.desk.send_bytes(plan.picture(colors));
     }
 
     fn note_sketch(&mut self, plan: &Plan, frame: f64, times: Times) {
