@@ -16,18 +16,6 @@ fn distance_squared(a: [i32; 2], b: [i32; 2]) -> u32 {
     (dx * dx) as u32 + (dy * dy) as u32
 }
 
-/// Of a sample and one more, that which is nearer to the pixel; of equally near ones the one farther up, then farther left.
-fn nearer(pixel: [i32; 2], known: u32, other: u32) -> u32 {
-    if other == NO_SAMPLE || other == known {
-        return known;
-    }
-    if known == NO_SAMPLE {
-        return other;
-    }
-    let (a, b) = (distance_squared(pixel, place(known)), distance_squared(pixel, place(other)));
-    if b < a || (b == a && other < known) { other } else { known }
-}
-
 /// The neighbours that a jump looks at, in this order.
 const NEIGHBOURS: [[i32; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];
 
@@ -42,22 +30,54 @@ pub fn nearest_samples(samples: &Samples) -> Vec<u32> {
     }
     let mut next = owners.clone();
     for step in flood_steps(samples.reach) {
-        let step = step as i32;
+        let from = Jump { size: (width, height), step: step as i32, owners: &owners };
         next.par_chunks_mut(across).enumerate().for_each(|(y, row)| {
             for (x, owner) in row.iter_mut().enumerate() {
-                let pixel = [x as i32, y as i32];
-                *owner = owners[y * across + x];
-                for [dx, dy] in NEIGHBOURS {
-                    let [i, j] = [pixel[0] + dx * step, pixel[1] + dy * step];
-                    if i >= 0 && j >= 0 && i < width as i32 && j < height as i32 {
-                        *owner = nearer(pixel, *owner, owners[j as usize * across + i as usize]);
-                    }
-                }
+                *owner = from.nearer([x as i32, y as i32]);
             }
         });
         std::mem::swap(&mut owners, &mut next);
     }
     owners
+}
+
+/// One jump: each pixel asks those around.
+struct Jump<'a> {
+    size: (u32, u32),
+    /// How far it looks, in pixels.
+    step: i32,
+    /// The nearest samples so far.
+    owners: &'a [u32],
+}
+
+impl Jump<'_> {
+    /// The nearest of the samples that a pixel and those around have for their nearest; of equally near ones the one farther
+    /// up, then farther left.
+    fn nearer(&self, pixel: [i32; 2]) -> u32 {
+        let (width, height) = (self.size.0 as i32, self.size.1 as i32);
+        let index = |[x, y]: [i32; 2]| y as usize * width as usize + x as usize;
+        let distance = |owner| if owner == NO_SAMPLE { u32::MAX } else { distance_squared(pixel, place(owner)) };
+        let mut nearest = self.owners[index(pixel)];
+        let mut least = distance(nearest);
+        if least == 0 {
+            return nearest;
+        }
+        for [dx, dy] in NEIGHBOURS {
+            let [x, y] = [pixel[0] + dx * self.step, pixel[1] + dy * self.step];
+            if x < 0 || y < 0 || x >= width || y >= height {
+                continue;
+            }
+            let other = self.owners[index([x, y])];
+            if other == nearest {
+                continue;
+            }
+            let away = distance(other);
+            if away < least || (away == least && other < nearest) {
+                (nearest, least) = (other, away);
+            }
+        }
+        nearest
+    }
 }
 
 /// The whole picture from `colors`, one for each of `samples`, 3 bytes a pixel.

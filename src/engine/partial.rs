@@ -15,6 +15,13 @@ impl Engine<'_> {
         }
     }
 
+    /// A pixel is expected to take so long, in ms.
+    pub fn expect(&mut self, pixel_ms: f64) {
+        if let Self::Gpu(gpu, _) = self {
+            gpu.expect(pixel_ms);
+        }
+    }
+
     /// Renders the pixels in these columns and rows, after [`Engine::take_lists`]: each has the value that it has in the full
     /// picture. Returns how many are not finite.
     pub fn pixels(&mut self, pixels: &[[u32; 2]], colors: &mut [[u8; 3]]) -> Result<u64, gpu::Error> {
@@ -46,6 +53,15 @@ impl<'a> Filler<'a> {
         match backend {
             Backend::Reference => Ok(Self::Cpu),
             Backend::Device(gpu, _) => Reconstructor::new(gpu).map(Self::Gpu),
+        }
+    }
+
+    /// Where it takes the least time for `backend`: a software device is slower at it than the CPU that it runs on. The bytes
+    /// are the same.
+    pub fn fastest(backend: Backend<'a>) -> Result<Self, gpu::Error> {
+        match backend {
+            Backend::Device(gpu, _) if gpu.info.kind == "software" => Ok(Self::Cpu),
+            backend => Self::new(backend),
         }
     }
 

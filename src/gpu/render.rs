@@ -63,7 +63,7 @@ pub struct GpuRenderer<'a> {
     width: u32,
     /// Samples of a pixel.
     samples: u64,
-    /// Number of tiles of the whole picture; no band has more.
+    /// Number of tiles of the whole picture, or of as many pixels of a list; no band has more.
     picture_tiles: u64,
     background: [u8; 3],
     max_depth: u32,

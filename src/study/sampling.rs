@@ -108,7 +108,7 @@ pub(super) fn partial_series(subject: &Subject, plan: &Plan) -> Result<PartialSe
 
     let mut full = Engine::new(backend, scene, settings, &effects)?;
     let (truth, _) = render_picture(&mut full, scene)?;
-    let mut filler = Filler::new(backend)?;
+    let mut filler = Filler::fastest(backend)?;
     let foveated = |far| Density { fovea: Some(fovea), far };
     let mut runners = Vec::new();
     let mut round_ms = 0.0;

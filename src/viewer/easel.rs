@@ -365,7 +365,7 @@ impl<'g> Easel<'g> {
             coarse_engine(backend, setting.scene, &settings, &subject.effects, subject.size, step)?;
         let plan = subject.plan.take();
         if plan.is_some() {
-            engine.take_lists();
+            self.sketcher.ready(&mut engine);
         }
         let took = start.elapsed() + Duration::from_secs_f64(subject.took / 1e3);
         let first = subject.took > 0.0;

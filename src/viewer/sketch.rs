@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::attention::{Attention, Economy};
 use super::places::{Places, SLOTS, SampleColors};
-use crate::engine::{Backend, Filler};
+use crate::engine::{Backend, Engine, Filler};
 use crate::gpu;
 use crate::sampling::{Density, Samples};
 
@@ -157,7 +157,7 @@ impl<'g> Sketcher<'g> {
         let slot = (0..SLOTS).find(is_free).unwrap_or_default();
         let filler = match self.filler.take() {
             Some(filler) => filler,
-            None => Filler::new(backend)?,
+            None => Filler::fastest(backend)?,
         };
         let plan = Arc::new(Plan::new(&filler, size, density, slot)?);
         self.filler = Some(filler);
@@ -181,6 +181,14 @@ impl<'g> Sketcher<'g> {
         }
         while self.level > 0 && forecast(self.level - 1) < SHORT_ENOUGH * limit {
             self.level -= 1;
+        }
+    }
+
+    /// Tells a new engine what is to come.
+    pub(super) fn ready(&self, engine: &mut Engine) {
+        engine.take_lists();
+        if self.measured {
+            engine.expect(self.sample);
         }
     }
 

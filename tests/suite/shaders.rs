@@ -7,10 +7,12 @@ use trueray::camera::Camera;
 use trueray::effects::{Effect, EffectSet, Effects, Request};
 use trueray::gpu::layout::{double, single};
 use trueray::gpu::{
-    Kernel, Module, SEE_TILES, SHADE_HITS, SelfTest, Slots, Specialisation, Storage, WALK_PATHS, echo_layout,
+    Kernel, Module, SEE_SAMPLES, SEE_TILES, SHADE_HITS, SelfTest, Slots, Specialisation, Storage, WALK_PATHS,
+    echo_layout,
 };
 
 use trueray::precision::Tier;
+use trueray::sampling::Fill;
 use trueray::settings::Settings;
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -163,7 +165,13 @@ fn the_small_modules_are_valid_and_have_their_entry_points() {
             assert_eq!(entry_points(paths), [SEE_TILES, WALK_PATHS, SHADE_HITS]);
             let trees = Module::render(kernel, storage, samples, NonZeroU32::new(3));
             assert_eq!(entry_points(trees), [SEE_TILES, SHADE_HITS]);
+            let list = Module::render_slots(kernel, storage, samples, None, Slots::List);
+            assert_eq!(entry_points(list), [SEE_TILES, SEE_SAMPLES, WALK_PATHS, SHADE_HITS]);
         }
+    }
+    assert_eq!(entry_points(Module::flood()), ["jump"]);
+    for fill in Fill::ALL {
+        assert_eq!(entry_points(Module::fill(fill)), ["fill"]);
     }
     let many = Module::render(Kernel::Tier(Tier::Fast), Storage::ManyLights, false, None);
     assert_eq!(entry_points(many), [SEE_TILES, WALK_PATHS, SHADE_HITS]);

@@ -20,7 +20,7 @@ use trueray::scene::{Scene, parse};
 use trueray::settings::Settings;
 use trueray::viewer::{
     Access, Canvas, Desk, FromPage, MAX_PAGES, MAX_UNACKNOWLEDGED, Outgoing, PLACES, Patch, Pose, Range, SAMPLES,
-    Studio, Watched, Wishes, watch,
+    SLOTS, Studio, Watched, Wishes, watch,
 };
 
 use crate::support::gpu;
@@ -138,7 +138,8 @@ impl Page {
             Outgoing::Bytes(bytes) => {
                 match u32::from_le_bytes(bytes[..4].try_into().unwrap()) {
                     PLACES => {
-                        self.ways = bytes[24..].as_chunks::<2>().0.iter().map(|way| way.map(u8::cast_signed)).collect()
+                        let ways = bytes[24..].as_chunks::<2>().0;
+                        self.places[bytes[20] as usize] = ways.iter().map(|way| way.map(u8::cast_signed)).collect();
                     }
                     SAMPLES => self.draw_samples(&bytes),
                     _ => {

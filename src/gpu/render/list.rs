@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::{GpuRenderer, TILE_PIXELS, Work};
+use super::{GpuRenderer, MAX_DISPATCH_TILES, TARGET_DISPATCH, TILE_PIXELS, Work};
 use crate::gpu::error::Error;
 use crate::gpu::shader::Slots;
 
@@ -15,6 +15,12 @@ impl GpuRenderer<'_> {
         self.inputs.specialisation.slots = Slots::List;
     }
 
+    /// A pixel is expected to take so long, in ms: the first dispatch is sized by that.
+    pub fn expect(&mut self, pixel_ms: f64) {
+        let tiles = TARGET_DISPATCH.as_secs_f64() * 1e3 / (pixel_ms * TILE_PIXELS as f64).max(1e-9);
+        self.tiles_per_dispatch = (tiles as u32).clamp(1, MAX_DISPATCH_TILES);
+    }
+
     /// Renders the pixels in these columns and rows, after [`GpuRenderer::take_lists`]; each has the value that it has in the
     /// full picture. Returns how many are not finite.
     pub fn pixels(&mut self, pixels: &[[u32; 2]], colors: &mut [[u8; 3]]) -> Result<u64, Error> {
@@ -22,6 +28,12 @@ impl GpuRenderer<'_> {
         let covered: Vec<usize> = (0..pixels.len()).filter(|&index| self.cover.has(pixels[index])).collect();
         let list: Vec<[u32; 2]> = covered.iter().map(|&index| pixels[index]).collect();
         self.listed += list.len() as u64;
+        // Buffers for this list and no more: the device fills them with zeros first.
+        let needed = list.len().div_ceil(TILE_PIXELS) as u64;
+        if self.work.is_none() || needed > self.picture_tiles {
+            self.picture_tiles = needed;
+            self.work = None;
+        }
 
         let mut not_finite = 0;
         let mut start = 0;

@@ -100,7 +100,7 @@ impl<'g> Easel<'g> {
         let Some(plan) = self.sketcher.plan(backend, &attention, size, FRAME)? else { return Ok(false) };
         let start = Instant::now();
         let mut engine = with_size(part, size, |part| Engine::new(backend, part, settings, effects))?;
-        engine.take_lists();
+        self.sketcher.ready(&mut engine);
         let samples = &plan.samples.pixels;
         let mut colors = vec![[0; 3]; samples.len()];
         engine.pixels(samples, &mut colors)?;
