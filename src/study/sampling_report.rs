@@ -147,7 +147,7 @@ impl PartialSeries {
                 }
             }
         };
-        drawing(500.0, frame.bottom + 52.0, &format!("Error {place} against time"), &content)
+        drawing(530.0, frame.bottom + 52.0, &format!("Error {place} against time"), &content)
     }
 }
 

@@ -77,7 +77,7 @@ impl Attention {
     /// Number of ever cheaper maps.
     pub(super) fn levels(&self) -> usize {
         match self.economy {
-            Economy::Foveated | Economy::Sparse => 4,
+            Economy::Foveated | Economy::Sparse => 5,
             Economy::Coarse => 0,
         }
     }
@@ -85,14 +85,14 @@ impl Attention {
     /// The map at a level, 0 being the densest.
     pub(super) fn density(&self, level: usize, size: (u32, u32)) -> Density {
         // From half of the pixels, or less, to the least in equal ratios.
-        let ratio = level.min(3) as f64 / 3.0;
+        let ratio = level.min(4) as f64 / 4.0;
         let part = self.least.max(0.5).powf(1.0 - ratio) * self.least.powf(ratio);
         if self.economy != Economy::Foveated {
             return Density::sparse(part);
         }
         let unit = f64::from(size.0.min(size.1));
-        // The fovea shrinks as well, and in the end more than the density falls elsewhere.
-        let scale = [1.0, 1.0, 0.6, 0.3][level.min(3)];
+        // The fovea shrinks as well.
+        let scale = [1.0, 1.0, 0.8, 0.5, 0.25][level.min(4)];
         let [radius, falloff] = self.fovea.map(|part| part * unit * scale);
         let center = [self.gaze[0] * f64::from(size.0), self.gaze[1] * f64::from(size.1)].map(f64::round);
         Density { fovea: Some(Fovea { center, radius, falloff }), far: part }
@@ -101,6 +101,6 @@ impl Attention {
 
 impl Default for Attention {
     fn default() -> Self {
-        Self { economy: Economy::Foveated, least: 1.0 / 16.0, fovea: [0.15, 0.15], gaze: [0.5, 0.5] }
+        Self { economy: Economy::Foveated, least: 1.0 / 64.0, fovea: [0.15, 0.15], gaze: [0.5, 0.5] }
     }
 }

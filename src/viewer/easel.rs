@@ -39,8 +39,10 @@ const MAX_SLICE_BYTES: usize = 2 << 20;
 /// Pixels of a page's picture on each side at the most: browsers show no larger ones everywhere.
 const GREATEST_SIDE: u32 = 8192;
 
-/// A scene of more spheres is shown by so many of them while the eye moves.
-const PREVIEW_SPHERES: usize = 20_000;
+/// A scene of more spheres is shown by a part of them while the eye moves.
+const MANY_SPHERES: usize = 20_000;
+/// So many then.
+const PREVIEW_SPHERES: usize = 10_000;
 /// The eye is at rest when nothing was wished for so long: then all of a large scene is prepared, which takes its time.
 const REST: Duration = Duration::from_millis(250);
 
@@ -233,7 +235,7 @@ impl<'g> Easel<'g> {
     }
 
     fn try_turn(&mut self, setting: &mut Setting) -> Result<(), gpu::Error> {
-        let previews = setting.scene.spheres.len() > PREVIEW_SPHERES;
+        let previews = setting.scene.spheres.len() > MANY_SPHERES;
         if self.is_behind() && (previews || !self.pass.as_ref().is_some_and(|pass| pass.first)) {
             match self.preview {
                 _ if !previews => self.begin(setting)?,
@@ -329,7 +331,7 @@ impl<'g> Easel<'g> {
         // Before anything is measured a coarse picture is there first.
         if step > 1 && self.pace.measured {
             let backend = self.gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, selection.tier));
-            plan = self.sketcher.plan(backend, &self.desk.attention(), size, limit)?;
+            plan = self.sketcher.plan(backend, &self.desk.attention(), size, [limit, self.pace.sample])?;
         }
         if plan.is_some() {
             step = 1;

@@ -97,16 +97,19 @@ pub(super) struct Sketcher<'g> {
 
 impl<'g> Sketcher<'g> {
     /// The map whose pictures take no longer than `limit`, in ms, or about so; none where the page wants none, or the picture
-    /// is too large or too thin.
+    /// is too large or too thin. Before any was measured, `guess` is the time of a sample.
     pub(super) fn plan(
         &mut self,
         backend: Backend<'g>,
         attention: &Attention,
         size: (u32, u32),
-        limit: f64,
+        [limit, guess]: [f64; 2],
     ) -> Result<Option<Arc<Plan>>, gpu::Error> {
         if !is_wanted(attention, size) {
             return Ok(None);
+        }
+        if !self.measured {
+            self.sample = guess;
         }
         self.choose_level(attention, size, limit);
         let plan = self.make(backend, attention.density(self.level, size), size)?;
@@ -168,10 +171,6 @@ impl<'g> Sketcher<'g> {
     /// Stays where it is unless another level is clearly better, since changing takes time as well.
     fn choose_level(&mut self, attention: &Attention, size: (u32, u32), limit: f64) {
         let last = attention.levels() - 1;
-        if !self.measured {
-            self.level = last.min(2);
-            return;
-        }
         // What does not go with the samples cannot be saved.
         let limit = limit.max(self.rest + 8.0);
         let forecast = |level: usize| self.rest + self.sample * attention.density(level, size).forecast(size);

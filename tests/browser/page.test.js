@@ -204,7 +204,7 @@ test('a moving picture has fewer samples, or fewer pixels, and at rest it is tha
   await move('ArrowLeft', () => window.trueray.sketches > 2 && window.trueray.state.sampled?.density.fovea?.center[0] === 450);
   assert.match(await page.locator('#shown').textContent(), /the full picture/);
   await page.locator('#economy').selectOption('sparse');
-  await page.locator('#least').selectOption('0.015625');
+  await page.locator('#least').selectOption('0.0625');
   await move('ArrowRight', () => window.trueray.state.sampled && !window.trueray.state.sampled.density.fovea);
   await page.locator('#economy').selectOption('coarse');
   await move('ArrowUp', () => window.trueray.state.step > 1);

@@ -278,7 +278,7 @@ fn options_that_make_no_sense_are_refused() {
         ("--foveate center --fovea-radius nan", "from 0 to 100"),
         ("--foveate center --fill best", "possible values: nearest, smooth"),
         ("--sparse 1.01", "above 0, up to 1"),
-        ("--sparse 0.1 --falloff 1", "--foveate"),
+        ("--sparse 0.1 --falloff 1", "cannot be used with"),
         ("--falloff 1", "--foveate"),
         ("--fill smooth", "--foveate"),
         ("--sparse 0.1 --res 10000x10000", "too large to be sampled in part"),

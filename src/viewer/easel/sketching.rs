@@ -78,7 +78,7 @@ impl<'g> Easel<'g> {
         let times = pass.engine.times();
         let (rays, all) = (times.render_ms + times.read_back_ms, ms(pass.took) - times.compile_ms);
         // A large scene is shown by a part of it while the eye moves: its own pictures say nothing of those.
-        if setting.scene.spheres.len() <= super::PREVIEW_SPHERES {
+        if setting.scene.spheres.len() <= super::MANY_SPHERES {
             self.sketcher.learn(samples.len(), rays, all);
         }
         self.pace.learn(self.pace.prepare, rays, samples.len() as f64);
@@ -97,7 +97,9 @@ impl<'g> Easel<'g> {
         size: (u32, u32),
     ) -> Result<bool, gpu::Error> {
         let attention = self.desk.attention();
-        let Some(plan) = self.sketcher.plan(backend, &attention, size, FRAME)? else { return Ok(false) };
+        let Some(plan) = self.sketcher.plan(backend, &attention, size, [FRAME, self.pace.sample])? else {
+            return Ok(false);
+        };
         let start = Instant::now();
         let mut engine = with_size(part, size, |part| Engine::new(backend, part, settings, effects))?;
         self.sketcher.ready(&mut engine);
@@ -112,7 +114,7 @@ impl<'g> Easel<'g> {
         Ok(true)
     }
 
-    /// While nothing else is to be done, makes a map for moving pictures to come, and tells the page of the next one.
+    /// While nothing else is to be done, makes a map for moving pictures to come.
     pub(super) fn prepare_sketch(&mut self) -> Result<(), gpu::Error> {
         let Some(subject) = &self.subject else { return Ok(()) };
         let (size, tier) = (subject.size, subject.selection.tier);
