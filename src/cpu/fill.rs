@@ -7,13 +7,18 @@ use crate::sampling::{Fill, NO_SAMPLE, Samples, flood_steps, packed};
 
 /// The pixel at a packed place.
 fn place(packed: u32) -> [i32; 2] {
-    [(packed & 0xffff) as i32, (packed >> 16) as i32]
+    [(packed & 0xffff).cast_signed(), (packed >> 16).cast_signed()]
+}
+
+/// The pixel in this column and row, both below 2¹⁵.
+fn pixel_at(x: usize, y: usize) -> [i32; 2] {
+    [(x as u32).cast_signed(), (y as u32).cast_signed()]
 }
 
 /// Square of the distance of two pixels.
 fn distance_squared(a: [i32; 2], b: [i32; 2]) -> u32 {
     let (dx, dy) = (a[0] - b[0], a[1] - b[1]);
-    (dx * dx) as u32 + (dy * dy) as u32
+    (dx * dx).cast_unsigned() + (dy * dy).cast_unsigned()
 }
 
 /// The neighbours that a jump looks at, in this order.
@@ -30,10 +35,10 @@ pub fn nearest_samples(samples: &Samples) -> Vec<u32> {
     }
     let mut next = owners.clone();
     for step in flood_steps(samples.reach) {
-        let from = Jump { size: (width, height), step: step as i32, owners: &owners };
+        let from = Jump { size: (width, height), step: step.cast_signed(), owners: &owners };
         next.par_chunks_mut(across).enumerate().for_each(|(y, row)| {
             for (x, owner) in row.iter_mut().enumerate() {
-                *owner = from.nearer([x as i32, y as i32]);
+                *owner = from.nearer(pixel_at(x, y));
             }
         });
         std::mem::swap(&mut owners, &mut next);
@@ -54,7 +59,7 @@ impl Jump<'_> {
     /// The nearest of the samples that a pixel and those around have for their nearest; of equally near ones the one farther
     /// up, then farther left.
     fn nearer(&self, pixel: [i32; 2]) -> u32 {
-        let (width, height) = (self.size.0 as i32, self.size.1 as i32);
+        let (width, height) = (self.size.0.cast_signed(), self.size.1.cast_signed());
         let index = |[x, y]: [i32; 2]| y as usize * width as usize + x as usize;
         let distance = |owner| if owner == NO_SAMPLE { u32::MAX } else { distance_squared(pixel, place(owner)) };
         let mut nearest = self.owners[index(pixel)];
@@ -92,7 +97,7 @@ pub fn filled(samples: &Samples, colors: &[[u8; 3]], fill: Fill) -> Vec<u8> {
     let mut rgb = vec![0; owners.len() * 3];
     rgb.par_chunks_mut(across * 3).enumerate().for_each(|(y, row)| {
         for (x, color) in row.as_chunks_mut::<3>().0.iter_mut().enumerate() {
-            let pixel = [x as i32, y as i32];
+            let pixel = pixel_at(x, y);
             *color = match fill {
                 Fill::Nearest => sources.color_of(owners[y * across + x]),
                 Fill::Smooth => sources.smooth(pixel),
@@ -143,7 +148,7 @@ impl Sources<'_> {
             }
         };
         add(nearest);
-        let last = [self.size.0 as i32 - 1, self.size.1 as i32 - 1];
+        let last = [self.size.0.cast_signed() - 1, self.size.1.cast_signed() - 1];
         for [dx, dy] in NEIGHBOURS {
             let [x, y] = [pixel[0] + dx * around, pixel[1] + dy * around];
             add(self.owners[self.index([x.clamp(0, last[0]), y.clamp(0, last[1])])]);

@@ -45,7 +45,7 @@ impl Places {
         let mut ways = Vec::with_capacity(owners.len());
         for (row, owners) in (0_i32..).zip(owners.chunks(size.0 as usize)) {
             for (column, owner) in (0_i32..).zip(owners) {
-                let way = [(owner & 0xffff) as i32 - column, (owner >> 16) as i32 - row];
+                let way = [(owner & 0xffff).cast_signed() - column, (owner >> 16).cast_signed() - row];
                 count += u32::from(way == [0, 0]);
                 fits &= way.iter().all(|part| i8::try_from(*part).is_ok());
                 ways.push(way.map(|part| part as i8));

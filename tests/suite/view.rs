@@ -193,7 +193,7 @@ impl Page {
         }
         assert_eq!((samples.next(), word(4) as usize), (None, message[24..].len() / 3));
         let source = |(index, [dx, dy]): (usize, &[i8; 2])| {
-            pixels[(index as isize + isize::from(*dx) + isize::from(*dy) * width as isize) as usize]
+            pixels[index.wrapping_add_signed(isize::from(*dx) + isize::from(*dy) * width.cast_signed())]
         };
         self.rgb = self.ways.iter().enumerate().flat_map(source).collect();
         self.sketches += 1;
