@@ -1,6 +1,7 @@
 //! Pixels without a sample filled on the device from those that have one; `src/cpu/fill.rs` does the same.
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 
 use wgpu::util::DeviceExt;
 
@@ -36,9 +37,11 @@ impl<'a> Reconstructor<'a> {
     /// The whole picture from `colors`, one for each of `samples`, 3 bytes a pixel.
     pub fn filled(&mut self, samples: &Samples, colors: &[[u8; 3]], fill: Fill) -> Result<Vec<u8>, Error> {
         let gpu = self.gpu;
-        if !self.fills.contains_key(&fill) {
-            self.fills.insert(fill, pipeline(gpu, &Module::fill(fill), "fill")?);
+        let kernel = match self.fills.entry(fill) {
+            Entry::Occupied(entry) => entry.into_mut(),
+            Entry::Vacant(entry) => entry.insert(pipeline(gpu, &Module::fill(fill), "fill")?),
         }
+        .clone();
         let owners = self.flood(samples)?;
         let mut known = vec![0_u32; pixel_count(samples)];
         for (pixel, &[r, g, b]) in samples.pixels.iter().zip(colors) {
@@ -49,7 +52,7 @@ impl<'a> Reconstructor<'a> {
             let picture = Readable::new(gpu, pixel_count(samples) as u64);
             let params = params(gpu, samples, 0);
             let bound = [&params, &owners.buffer, &known, &picture.buffer];
-            run(gpu, &self.fills[&fill], samples, &[bind(gpu, &self.fills[&fill], &bound)]);
+            run(gpu, &kernel, samples, &[bind(gpu, &kernel, &bound)]);
             picture
         })?;
         picture.read(gpu, pixel_count(samples), |pixels| {

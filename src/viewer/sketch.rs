@@ -118,7 +118,7 @@ impl<'g> Sketcher<'g> {
     }
 
     /// What the page must hear before it gets a picture of this map.
-    pub(super) fn to_tell(&mut self, plan: &Arc<Plan>) -> Option<Vec<u8>> {
+    pub(super) fn news_of(&mut self, plan: &Arc<Plan>) -> Option<Vec<u8>> {
         let kept = self.kept.iter_mut().find(|kept| Arc::ptr_eq(&kept.plan, plan))?;
         let told = std::mem::replace(&mut kept.told, true);
         (!told).then(|| plan.places())

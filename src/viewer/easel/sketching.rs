@@ -137,7 +137,7 @@ impl<'g> Easel<'g> {
     }
 
     fn show_samples(&mut self, plan: &Arc<Plan>, colors: &[[u8; 3]]) {
-        if let Some(places) = self.sketcher.to_tell(plan) {
+        if let Some(places) = self.sketcher.news_of(plan) {
             self.desk.send_bytes(places);
         }
         self.canvas.hide();
