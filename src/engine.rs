@@ -1,5 +1,7 @@
 //! One interface to whatever renders: rows of a picture, band by band, in bounded memory.
 
+mod partial;
+
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
@@ -11,6 +13,8 @@ use crate::precision::Tier;
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::tiles::TILE;
+
+pub use partial::{Filler, PartialPicture, render_partial};
 
 /// Bytes of one band of rows at the most, unless a single row of tiles takes more.
 const BAND_BYTES: usize = 16 << 20;

@@ -3,7 +3,7 @@
 //!
 //! The data walk: scene text → [`scene::Scene`] → [`effects::Effects`] → lists of spheres ([`accel`]) → packed buffers →
 //! composed WGSL and constants → stages of dispatches → rows of pixels → file. `cpu` and `gpu` never see each other; both
-//! read [`scene`], [`effects`], [`camera`], [`geometry`] and [`accel`].
+//! read [`scene`], [`effects`], [`camera`], [`geometry`], [`accel`] and [`sampling`].
 
 pub mod accel;
 pub mod bench;
@@ -21,6 +21,7 @@ pub mod gpu;
 pub mod precision;
 mod random;
 mod report;
+pub mod sampling;
 pub mod scene;
 pub mod settings;
 pub mod stress;

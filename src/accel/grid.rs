@@ -1,6 +1,6 @@
 //! A uniform grid for rays that share nothing: reflections.
 
-use glam::{DVec3, UVec3};
+use glam::{DVec3, IVec3, UVec3};
 use rayon::prelude::*;
 
 use super::bounds::{Enclosure, Rounding, Solid};
@@ -208,10 +208,10 @@ pub struct Walk {
     leave: f64,
     step: DVec3,
     /// What a step along each axis adds to the index of the cell.
-    strides: [isize; 3],
+    strides: IVec3,
     /// Where the ray leaves the cell along each axis.
     wall: DVec3,
-    cell: isize,
+    cell: i32,
     inside: bool,
 }
 
@@ -229,9 +229,10 @@ impl Walk {
         let place = (origin + direction * enter).floor().clamp(DVec3::ZERO, size - DVec3::ONE);
         let is_ahead = inverse.cmpge(DVec3::ZERO);
         let step = DVec3::select(is_ahead, DVec3::ONE, DVec3::NEG_ONE);
-        let strides = [1, grid.cells.x as isize, (grid.cells.x * grid.cells.y) as isize];
-        let cell = (0..3).map(|axis| place[axis] as isize * strides[axis]).sum();
-        let strides = std::array::from_fn(|axis| strides[axis] * step[axis] as isize);
+        let cells = grid.cells.as_ivec3();
+        let strides = IVec3::new(1, cells.x, cells.x * cells.y);
+        let cell = place.as_ivec3().dot(strides);
+        let strides = strides * step.as_ivec3();
         Self { origin, inverse, leave, step, strides, wall: place + step.max(DVec3::ZERO), cell, inside }
     }
 }

@@ -102,6 +102,14 @@ impl Cover {
     }
 }
 
+impl Cover {
+    /// Whether any sphere may cover the pixel in this column and row.
+    pub fn has(&self, [x, y]: [u32; 2]) -> bool {
+        let edge = TILE << self.shift;
+        self.has_spheres[(y / edge) as usize * self.across as usize + (x / edge) as usize]
+    }
+}
+
 impl Tiles<'_> {
     /// How many tiles the rectangles around the spheres have, counted until beyond `limit`.
     fn rectangles(&self, limit: u64) -> u64 {

@@ -13,6 +13,7 @@ mod options;
 mod output;
 mod progress;
 mod render;
+mod sampling;
 mod stats;
 mod stress;
 mod study;

@@ -9,12 +9,14 @@ use super::input::Loaded;
 use super::options::{DeviceOptions, PictureOptions, device_name};
 use super::output::{err, errln};
 use super::progress::{Progress, Style};
-use super::stats::Stats;
+use super::sampling::{Choice, SamplingOptions};
+use super::stats::{Sampled, Stats};
 use crate::effects::Effects;
-use crate::engine::{Backend, Engine, render_bands};
+use crate::engine::{Backend, Engine, render_bands, render_partial};
 use crate::film::{Format, PictureWriter, Target};
 use crate::gpu::Gpu;
 use crate::precision::Selection;
+use crate::sampling::Samples;
 use crate::settings::Settings;
 
 /// Arguments of `trueray render`.
@@ -31,6 +33,8 @@ pub(super) struct Args {
     format: Option<Format>,
     #[command(flatten)]
     picture: PictureOptions,
+    #[command(flatten)]
+    sampling: SamplingOptions,
     #[command(flatten)]
     device: DeviceOptions,
     /// Print which effects are simulated, and why
@@ -126,10 +130,12 @@ fn render_one(
     args.picture.resize(&mut loaded.scene);
     let scene = &loaded.scene;
     let (target, format) = target(args, &loaded)?;
+    let choice = args.sampling.choice((scene.width, scene.height))?;
     let effects = args.picture.renderable_effects(scene, settings)?;
     let selection = args.device.selection(gpu, scene, settings, &effects);
     if args.explain || args.verbose {
-        err!("{}{}", explanation(&loaded.name, &effects), precision_explanation(&selection));
+        let sampling = choice.as_ref().map(Choice::explanation).unwrap_or_default();
+        err!("{}{}{sampling}", explanation(&loaded.name, &effects), precision_explanation(&selection));
         if let Some(gpu) = gpu {
             errln!("  tuning       {}", gpu.tuned.summary());
             if let Some(note) = gpu.kernel_cache_note() {
@@ -152,13 +158,26 @@ fn render_one(
     let mut writer = PictureWriter::create(&target, format, width, height)?;
     let mut write_time = Duration::ZERO;
     let mut progress = Progress::new(if args.quiet { Style::None } else { args.progress }, &loaded.name, height);
-    let not_finite = render_bands(&mut engine, (width, height), |band| {
+    let mut sampled = None;
+    let not_finite = if let Some(Choice { density, fill }) = choice {
+        let samples = Samples::new((width, height), &density);
+        engine.take_lists();
+        let whole = f64::from(height);
+        let picture = render_partial(&mut engine, backend, &samples, fill, |part| progress.set((part * whole) as u32))?;
         let start = Instant::now();
-        writer.write_rows(band.rgb)?;
+        writer.write_rows(&picture.rgb)?;
         write_time += start.elapsed();
-        progress.set(band.first);
-        Ok::<_, Failure>(())
-    })?;
+        sampled = Some(Sampled { density, fill, pixels: samples.pixels.len() as u64, fill_ms: picture.fill_ms });
+        picture.not_finite
+    } else {
+        render_bands(&mut engine, (width, height), |band| {
+            let start = Instant::now();
+            writer.write_rows(band.rgb)?;
+            write_time += start.elapsed();
+            progress.set(band.first);
+            Ok::<_, Failure>(())
+        })?
+    };
     drop(progress);
     let finishing = Instant::now();
     writer.finish()?;
@@ -179,6 +198,7 @@ fn render_one(
         settings: *settings,
         effects,
         precision: gpu.map(|_| selection),
+        sampled,
         rays: engine.rays().filter(|_| !args.no_ray_counts),
         not_finite_pixels: not_finite,
         parse_ms: ms(loaded.parse_time),

@@ -7,7 +7,20 @@ use serde::Serialize;
 use crate::effects::Effects;
 use crate::engine::{Rays, Times};
 use crate::precision::Selection;
+use crate::sampling::{Density, Fill};
 use crate::settings::Settings;
+
+/// What was sampled of a picture, where that is not everything.
+#[derive(Debug, Serialize)]
+pub(super) struct Sampled {
+    #[serde(flatten)]
+    pub density: Density,
+    pub fill: Fill,
+    /// Sampled pixels.
+    pub pixels: u64,
+    /// Filling the others.
+    pub fill_ms: f64,
+}
 
 /// Everything worth knowing of one rendered picture.
 #[derive(Debug, Serialize)]
@@ -25,6 +38,9 @@ pub(super) struct Stats {
     pub effects: Effects,
     /// The kernel's tier and why; the CPU reference knows no tiers.
     pub precision: Option<Selection>,
+    /// Absent where every pixel is sampled.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sampled: Option<Sampled>,
     pub rays: Option<Rays>,
     pub not_finite_pixels: u64,
     /// Reading and parsing the scene.
@@ -55,6 +71,11 @@ impl Stats {
         if let Some(Selection { tier, reason, .. }) = &self.precision {
             row("precision", format!("{tier}: {reason}"));
         }
+        if let Some(Sampled { fill, pixels, .. }) = &self.sampled {
+            let all = u64::from(self.width) * u64::from(self.height);
+            let part = *pixels as f64 * 100.0 / all as f64;
+            row("sampled", format!("{pixels} of {all} pixels ({part:.1} %), the others filled: {fill}"));
+        }
         if let Some(Rays { primary, shadow, reflection }) = self.rays {
             row("rays", format!("{primary} primary, {shadow} shadow, {reflection} reflection"));
         }
@@ -70,6 +91,9 @@ impl Stats {
         ];
         for (name, ms) in times {
             row(name, format!("{ms:>10.3} ms"));
+        }
+        if let Some(Sampled { fill_ms, .. }) = &self.sampled {
+            row("fill", format!("{fill_ms:>10.3} ms"));
         }
         if self.times.dispatches > 0 {
             let Times { dispatches, longest_dispatch_ms, .. } = self.times;

@@ -1,6 +1,7 @@
 //! The CPU reference: the specification in `f64`, written to be read beside the shaders.
 
 mod dd;
+mod fill;
 mod intersect;
 mod margin;
 pub mod oracle;
@@ -16,6 +17,7 @@ mod vec3;
 mod witness;
 
 pub use dd::Dd;
+pub use fill::{filled, nearest_samples};
 pub use margin::{Decision, Judge};
 pub use real::Real;
 pub use render::{Reference, Tally};

@@ -99,6 +99,20 @@ impl<T: Real> Reference<T> {
     }
 }
 
+impl<T: Real> Reference<T> {
+    /// Renders the pixels in these columns and rows, each with the value that it has in the full picture, in parallel.
+    pub fn pixels(&self, pixels: &[[u32; 2]], colors: &mut [[u8; 3]]) -> Tally {
+        let samples = u64::from(self.camera.samples() * self.camera.samples());
+        let each = |(&[i, j], target): (&[u32; 2], &mut [u8; 3])| {
+            let mut tally = Tally::default();
+            let color = self.pixel_color(i, j, &mut tally).to_f64();
+            *target = self.quantize.levels(color);
+            tally.plus(Tally { primary: samples, not_finite: u64::from(!color.is_finite()), ..Tally::default() })
+        };
+        pixels.par_iter().zip(colors).with_min_len(256).map(each).reduce(Tally::default, Tally::plus)
+    }
+}
+
 /// What rendering some rows came to.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Tally {

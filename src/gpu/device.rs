@@ -310,7 +310,7 @@ impl Gpu {
             #[allow(
                 unsafe_code,
                 reason = "runtime checks cost up to 30 %: every index is below a length that the host set with the \
-                          buffers, every loop counts up to a bound, no integer is divided"
+                          buffers, every loop counts up to a bound, no integer is divided by 0"
             )]
             unsafe {
                 self.device.create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked())

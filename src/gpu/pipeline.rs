@@ -5,7 +5,7 @@ use std::num::NonZeroU32;
 use super::device::Gpu;
 use super::error::Error;
 use super::kernel_cache::KernelCache;
-use super::shader::{Kernel, Module, Places, Storage};
+use super::shader::{Kernel, Module, Places, Slots, Storage};
 use crate::accel::Acceleration;
 use crate::effects::{Effect, EffectSet, Effects};
 use crate::scene::Scene;
@@ -35,6 +35,8 @@ pub struct Specialisation {
     pub places: Places,
     /// Side of the grid of samples in a pixel.
     pub samples: u32,
+    /// Which pixels a dispatch renders.
+    pub slots: Slots,
     /// Whether each pixel also says how many rays it took.
     pub count_rays: bool,
     /// Invocations of a workgroup of the kernels that are not over tiles.
@@ -55,6 +57,7 @@ impl Specialisation {
             storage,
             places: Places::Both,
             samples: settings.samples,
+            slots: Slots::Tiles,
             count_rays: false,
             workgroup: tuning.workgroup,
         }
@@ -116,12 +119,14 @@ impl Specialisation {
 
     /// The module that renders.
     pub fn module(&self) -> Module {
-        Module::render(self.kernel, self.storage, self.places, self.samples > 1, self.refraction)
+        Module::render_slots(self.kernel, self.storage, self.places, self.samples > 1, self.refraction, self.slots)
     }
 }
 
 /// The entry point that casts the primary rays of tiles.
 pub const SEE_TILES: &str = "see_tiles";
+/// The entry point that casts the primary rays of a list of pixels.
+pub const SEE_SAMPLES: &str = "see_samples";
 /// The entry point that casts the reflection rays of paths.
 pub const WALK_PATHS: &str = "walk_paths";
 
@@ -200,7 +205,11 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
         Some(_) => common.push((5, Read)),
         None => common.extend([(12, ReadWrite), (18, WriteTexels), (19, Uniform)]),
     }
-    let primary = [(4, Texels), (6, Uniform)];
+    let (see_entry, places) = match specialisation.slots {
+        Slots::Tiles => (SEE_TILES, Uniform),
+        Slots::List => (SEE_SAMPLES, Read),
+    };
+    let primary = [(4, Texels), (6, places)];
     let kernel =
         |entry_point, own: &[(u32, Access)]| stage(gpu, &module, entry_point, &constants, &[&common[..], own].concat());
     let between = || {
@@ -216,7 +225,7 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
     // A driver compiles a kernel on the thread that asks for it: side by side. The largest one goes here, since allocating is
     // cheapest on the main thread.
     std::thread::scope(|scope| {
-        let see = scope.spawn(|| kernel(SEE_TILES, &primary));
+        let see = scope.spawn(|| kernel(see_entry, &primary));
         let bounce = specialisation.has_paths().then(|| {
             let walk = kernel(WALK_PATHS, &[(11, Texels)])?;
             Ok::<_, Error>([between()?, walk])

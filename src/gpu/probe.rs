@@ -12,7 +12,7 @@ use super::layout::{Layout, ListValues, ParamValues, ShapeValues, double, single
 use super::pack::{bytes, low_light, low_shape, shape_value};
 use super::pipeline::Specialisation;
 use super::readable::Readable;
-use super::shader::{Kernel, Module, Places, Storage};
+use super::shader::{Kernel, Module, Places, Slots, Storage};
 use crate::camera::NEAR_T_MIN;
 use crate::effects::EffectSet;
 use crate::geometry::{Ellipsoid, range_factor, shape_indices};
@@ -266,6 +266,7 @@ impl<'a> Prober<'a> {
             count_rays: false,
             workgroup: 64,
             samples: 1,
+            slots: Slots::Tiles,
         };
         let pipeline = self.gpu.checked("compiling the probe", || {
             self.gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {

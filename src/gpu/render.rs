@@ -1,5 +1,7 @@
 //! Rows of pixels from the device: tiles in dispatches that stay short, read back and put in place.
 
+mod list;
+
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -11,7 +13,7 @@ use super::error::Error;
 use super::pack::{Contents, Packed, list_contents};
 use super::pipeline::{MAX_UNIFORM_LIGHTS, Resource, Specialisation, Stage, Stages};
 use super::readable::Readable;
-use super::shader::{Kernel, Storage};
+use super::shader::{Kernel, Slots, Storage};
 use super::timestamps::Timestamps;
 use super::upload::{empty_texels, max_texels, upload, upload_texels};
 use crate::accel::{Acceleration, Cover, Density, Rounding};
@@ -46,7 +48,7 @@ pub struct DeviceTimes {
     pub longest_dispatch: Duration,
     /// Number of dispatches.
     pub dispatches: u64,
-    /// Tiles rendered.
+    /// Tiles rendered, or as many pixels of lists.
     pub tiles: u64,
 }
 
@@ -58,7 +60,7 @@ pub struct GpuRenderer<'a> {
     width: u32,
     /// Samples of a pixel.
     samples: u64,
-    /// Tiles of the whole picture that any sphere may cover; no band has more.
+    /// Tiles of the whole picture that any sphere may cover, or of as many pixels of a list; no band has more.
     covered_tiles: u64,
     background: [u8; 3],
     max_depth: u32,
@@ -69,6 +71,8 @@ pub struct GpuRenderer<'a> {
     timestamps: Option<Timestamps>,
     /// Shadow and reflection rays so far, where they are counted.
     rays: [u64; 2],
+    /// Pixels rendered of lists.
+    listed: u64,
 }
 
 /// Everything that is needed to build the kernels once a tile asks for them.
@@ -168,6 +172,7 @@ impl<'a> GpuRenderer<'a> {
             times: DeviceTimes::default(),
             timestamps: None,
             rays: [0; 2],
+            listed: 0,
         })
     }
 
@@ -189,7 +194,11 @@ impl<'a> GpuRenderer<'a> {
 
     /// Primary, shadow and reflection rays so far; `None` where they are not counted.
     pub fn rays(&self) -> Option<[u64; 3]> {
-        let primary = self.times.tiles * TILE_PIXELS as u64 * self.samples;
+        let pixels = match self.inputs.specialisation.slots {
+            Slots::Tiles => self.times.tiles * TILE_PIXELS as u64,
+            Slots::List => self.listed,
+        };
+        let primary = pixels * self.samples;
         self.inputs.specialisation.count_rays.then_some([primary, self.rays[0], self.rays[1]])
     }
 
@@ -212,7 +221,7 @@ impl<'a> GpuRenderer<'a> {
             let (now, later) = rest.split_at(rest.len().min(work.capacity.min(self.tiles_per_dispatch) as usize));
             let took = self.dispatch(&work, now)?;
             not_finite += self.read_back(&work, now, first, rgb)?;
-            self.add_rays(&work, now.len())?;
+            self.add_rays(&work, now.len() * TILE_PIXELS)?;
             self.work = Some(work);
             self.set_pace(now.len(), took);
             rest = later;
@@ -252,6 +261,29 @@ impl<'a> GpuRenderer<'a> {
         self.covered_tiles.min(limit).max(1) as u32
     }
 
+    /// Tiles, or pixels of a list, as the kernels read them.
+    fn packed_places(&self, places: &[[u32; 2]]) -> Vec<u8> {
+        match self.inputs.specialisation.slots {
+            Slots::Tiles => {
+                let packed: Vec<u32> = places.iter().map(|[x, y]| (x / TILE) | (y / TILE) << 16).collect();
+                bytemuck::cast_slice(&packed).to_vec()
+            }
+            Slots::List => {
+                let mut whole = places.to_vec();
+                whole.resize(places.len().next_multiple_of(TILE_PIXELS), [0, 0]);
+                bytemuck::cast_slice(&whole).to_vec()
+            }
+        }
+    }
+
+    /// The workgroups over so many tiles, or pixels of a list.
+    fn workgroups(&self, places: usize) -> u32 {
+        match self.inputs.specialisation.slots {
+            Slots::Tiles => places as u32,
+            Slots::List => places.div_ceil(TILE_PIXELS) as u32,
+        }
+    }
+
     fn dispatch(&mut self, work: &Work, tiles: &[[u32; 2]]) -> Result<Duration, Error> {
         let start = Instant::now();
         self.submit(work, tiles)?;
@@ -262,14 +294,13 @@ impl<'a> GpuRenderer<'a> {
         }
         self.times.longest_dispatch = self.times.longest_dispatch.max(took);
         self.times.dispatches += 1;
-        self.times.tiles += tiles.len() as u64;
+        self.times.tiles += u64::from(self.workgroups(tiles.len()));
         Ok(took)
     }
 
     /// Runs all stages over `tiles` and waits for them.
     fn submit(&self, work: &Work, tiles: &[[u32; 2]]) -> Result<(), Error> {
-        let packed: Vec<u32> = tiles.iter().map(|[x, y]| (x / TILE) | (y / TILE) << 16).collect();
-        self.gpu.queue.write_buffer(&work.tiles, 0, bytemuck::cast_slice(&packed));
+        self.gpu.queue.write_buffer(&work.tiles, 0, &self.packed_places(tiles));
         self.gpu.queue.write_buffer(&work.stage, 0, &[0; STAGE_SIZE as usize]);
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {
@@ -285,7 +316,7 @@ impl<'a> GpuRenderer<'a> {
                     None => pass.dispatch_workgroups_indirect(&work.workgroups, 0),
                 }
             };
-            let tiles = Some(tiles.len() as u32);
+            let tiles = Some(self.workgroups(tiles.len()));
             let stages = &work.stages;
             run(&stages.see, &work.see_group, tiles);
             if let (Some([begin, walk]), Some(begin_group), Some(groups)) =
@@ -318,13 +349,13 @@ impl<'a> GpuRenderer<'a> {
         Ok(not_finite)
     }
 
-    /// Adds up the ray counts of the last dispatch of so many tiles.
-    fn add_rays(&mut self, work: &Work, tiles: usize) -> Result<(), Error> {
+    /// Adds up the ray counts of the last dispatch of so many pixels.
+    fn add_rays(&mut self, work: &Work, pixels: usize) -> Result<(), Error> {
         if self.inputs.specialisation.count_rays {
             let sum = |counts: &[u32]| {
                 counts.iter().fold([0, 0], |[s, r], count| [s + u64::from(count & 0xffff), r + u64::from(count >> 16)])
             };
-            let values = tiles * TILE_PIXELS * self.samples as usize;
+            let values = pixels * self.samples as usize;
             let [shadow, reflection] = work.ray_counts.read(self.gpu, values, sum)?;
             self.rays = [self.rays[0] + shadow, self.rays[1] + reflection];
         }
@@ -352,7 +383,7 @@ impl Work {
         let empty = |size, usage| {
             device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
         };
-        let storage = wgpu::BufferUsages::STORAGE;
+        let (storage, copied) = (wgpu::BufferUsages::STORAGE, wgpu::BufferUsages::COPY_DST);
         let pixel_count = u64::from(capacity) * TILE_PIXELS as u64;
         let slots = pixel_count * u64::from(specialisation.samples * specialisation.samples);
         let pixels = Readable::new(gpu, pixel_count);
@@ -360,9 +391,11 @@ impl Work {
         let paths = specialisation.path_size() * if specialisation.has_paths() { slots } else { 1 };
         let color_size = if specialisation.kernel.is_double() { 32 } else { 16 };
         let paths = [0, 1].map(|_| empty_texels(gpu, paths));
-        let tiles =
-            empty(u64::from(MAX_DISPATCH_TILES) * 4, wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST);
-        let stage = empty(STAGE_SIZE, storage | wgpu::BufferUsages::COPY_DST);
+        let tiles = match specialisation.slots {
+            Slots::Tiles => empty(u64::from(MAX_DISPATCH_TILES) * 4, wgpu::BufferUsages::UNIFORM | copied),
+            Slots::List => empty(pixel_count * 8, storage | copied),
+        };
+        let stage = empty(STAGE_SIZE, storage | copied);
         let workgroups = empty(12, storage | wgpu::BufferUsages::INDIRECT);
         let colors = stages.resolve.as_ref().map(|_| empty(slots * color_size, storage));
         let results = colors.as_ref().unwrap_or(&pixels.buffer);

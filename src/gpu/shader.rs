@@ -6,6 +6,7 @@ use std::num::NonZeroU32;
 
 use crate::accel::Rounding;
 use crate::precision::Tier;
+use crate::sampling::Fill;
 
 /// One file of `shaders/`, or a line from the host.
 #[derive(Debug, Clone)]
@@ -90,6 +91,15 @@ pub enum Storage {
     Ranges,
 }
 
+/// Which pixels a dispatch renders.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Slots {
+    /// All of each tile.
+    Tiles,
+    /// Those of a list.
+    List,
+}
+
 /// The scalar of the kernel and what the host packs.
 fn data_parts(kernel: Kernel, storage: Storage) -> Vec<Part> {
     let barrier = if kernel == Kernel::NoBarrier { part!("barrier_none.wgsl") } else { part!("barrier.wgsl") };
@@ -152,6 +162,18 @@ impl Module {
         samples: bool,
         refraction: Option<NonZeroU32>,
     ) -> Self {
+        Self::render_slots(kernel, storage, places, samples, refraction, Slots::Tiles)
+    }
+
+    /// Likewise, for dispatches over tiles or over lists of pixels.
+    pub fn render_slots(
+        kernel: Kernel,
+        storage: Storage,
+        places: Places,
+        samples: bool,
+        refraction: Option<NonZeroU32>,
+        slots: Slots,
+    ) -> Self {
         let mut parts = intersection_parts(kernel, storage);
         parts.extend(match places {
             Places::Grid => vec![part!("grid.wgsl"), part!("secondary_grid.wgsl")],
@@ -170,6 +192,10 @@ impl Module {
             parts.push(part!("paths.wgsl"));
         }
         parts.push(part!("stages.wgsl"));
+        parts.push(match slots {
+            Slots::Tiles => part!("slots_tiles.wgsl"),
+            Slots::List => part!("slots_list.wgsl"),
+        });
         Self::join(parts)
     }
 
@@ -184,6 +210,20 @@ impl Module {
         parts.extend(data_parts(kernel, Storage::Lights(0)));
         parts.extend([part!("quantize.wgsl"), part!("resolve.wgsl")]);
         Self::join(parts)
+    }
+
+    /// The module that finds each pixel's nearest sample.
+    pub fn flood() -> Self {
+        Self::join(vec![part!("flood.wgsl"), part!("flood_jump.wgsl")])
+    }
+
+    /// The module that fills pixels without a sample.
+    pub fn fill(fill: Fill) -> Self {
+        let filled = match fill {
+            Fill::Nearest => part!("fill_nearest.wgsl"),
+            Fill::Smooth => part!("fill_smooth.wgsl"),
+        };
+        Self::join(vec![part!("flood.wgsl"), part!("fill.wgsl"), filled])
     }
 
     /// The module that tries error-free transforms.

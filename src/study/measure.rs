@@ -6,6 +6,7 @@ use serde::Serialize;
 use super::contestant::{Contestant, Runner};
 use super::effect_cost::{EffectCost, effect_cost};
 use super::error::{Distance, Error, linear_colors};
+use super::sampling::{PartialSeries, partial_series};
 use crate::compare::Explanation;
 use crate::cpu::Reference;
 use crate::effects::{Effect, EffectSet, Effects};
@@ -35,7 +36,7 @@ pub struct Plan {
 
 impl Plan {
     /// How many rounds of so many ms there is time for.
-    fn affordable(&self, round_ms: f64) -> usize {
+    pub(super) fn affordable(&self, round_ms: f64) -> usize {
         let affordable = (self.seconds * 1e3 / round_ms) as usize;
         affordable.max(LEAST_RUNS).min(self.runs)
     }
@@ -89,6 +90,8 @@ pub struct Study {
     pub depth: Series,
     /// Over samples per pixel.
     pub samples: Series,
+    /// With samples of a part of the pixels.
+    pub partial: PartialSeries,
     /// What each effect costs.
     pub effect_cost: EffectCost,
 }
@@ -191,6 +194,8 @@ pub fn study(subject: &Subject, plan: &Plan) -> Result<Study, Error> {
     let variants: Vec<_> = plan.sides.iter().map(|&side| with_side(side)).collect();
     let samples = series(subject, plan, &mut contestants, &mut skipped, &variants, Some(finer))?;
 
+    let partial = partial_series(subject, plan)?;
+
     // Its variants take about as long as what the same tier took.
     let main = gpu.map_or(Contestant::CpuDouble, |_| Contestant::Device(selection.tier));
     let one_ms =
@@ -212,6 +217,7 @@ pub fn study(subject: &Subject, plan: &Plan) -> Result<Study, Error> {
         precision,
         depth,
         samples,
+        partial,
         effect_cost: effect_cost(backend, scene, settings, plan.affordable(variants_ms))?,
     })
 }

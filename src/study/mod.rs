@@ -7,6 +7,8 @@ mod hard_cases;
 mod measure;
 mod plots;
 mod report;
+mod sampling;
+mod sampling_report;
 mod table;
 
 pub use crate::report::Sample;
@@ -16,4 +18,5 @@ pub use error::{Distance, Error};
 pub use hard_cases::{HardCases, hard_cases};
 pub use measure::{Plan, Point, Series, Skipped, Study, Subject, Truth, study};
 pub use report::html;
+pub use sampling::{Manner, PartialPoint, PartialSeries};
 pub use table::{COLUMNS, csv};

@@ -86,6 +86,8 @@ fn section(study: &Study) -> Markup {
         }
         (table(samples))
 
+        (study.partial.section())
+
         h3 { "Effects" }
         p {
             "A kernel is compiled with just the effects that the scene calls for (auto). Forcing one on costs time for \

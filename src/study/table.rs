@@ -2,10 +2,13 @@
 
 use std::fmt::Write as _;
 
+use super::error::Distance;
 use super::measure::{Point, Series, Study};
+use super::sampling::PartialPoint;
 use crate::report::Sample;
 use crate::report::csv::record;
 use crate::report::number::{short, time};
+use crate::settings::Settings;
 
 impl Study {
     /// Tables for people.
@@ -19,6 +22,10 @@ impl Study {
         }
         for (title, series) in self.titled() {
             let _ = write!(text, "\n{title}, {} runs\n{}", series.runs, series.report());
+        }
+        if !self.partial.points.is_empty() {
+            let title = "Samples of a part of the pixels; error in levels against the full picture";
+            let _ = write!(text, "\n{title}, {} runs\n{}", self.partial.runs, self.partial.report());
         }
         let _ = write!(text, "\nWhat each effect costs ({})\n{}", self.effects_on(), self.effect_cost.report());
         text
@@ -82,7 +89,7 @@ impl Series {
 }
 
 /// Names of the columns of [`csv`].
-pub const COLUMNS: [&str; 29] = [
+pub const COLUMNS: [&str; 32] = [
     "scene",
     "width",
     "height",
@@ -111,6 +118,9 @@ pub const COLUMNS: [&str; 29] = [
     "truth_rms_level",
     "truth_rms_linear",
     "same_picture",
+    "sampled_pixels",
+    "inside_rms_level",
+    "outside_rms_level",
     "wall_runs_ms",
 ];
 
@@ -136,8 +146,13 @@ pub fn csv(studies: &[Study]) -> String {
             ];
             fields.extend(times(&variant.render));
             fields.extend(std::iter::repeat_n(String::new(), 13));
-            fields.extend([variant.same_picture.to_string(), runs(&variant.render)]);
+            fields.push(variant.same_picture.to_string());
+            fields.extend(std::iter::repeat_n(String::new(), 3));
+            fields.push(runs(&variant.render));
             text += &record(&[&head[..], &fields].concat());
+        }
+        for point in &study.partial.points {
+            text += &record(&[&head[..], &partial_fields(study, point)].concat());
         }
     }
     text
@@ -177,8 +192,21 @@ fn fields(name: &str, series: &Series, point: &Point) -> Vec<String> {
         truth(point.from_truth.map(|distance| distance.differing)),
         optional(point.from_truth.map(|distance| distance.rms_level)),
         optional(point.from_truth.and_then(|distance| distance.rms_linear)),
-        String::new(),
-        runs(&point.wall),
     ]);
+    fields.extend(std::iter::repeat_n(String::new(), 4));
+    fields.push(runs(&point.wall));
+    fields
+}
+
+fn partial_fields(study: &Study, point: &PartialPoint) -> Vec<String> {
+    let Settings { max_depth, samples, .. } = study.settings;
+    let mut fields = vec!["partial".to_owned(), point.name(), max_depth.to_string(), samples.pow(2).to_string()];
+    fields.extend(times(&point.wall));
+    let Distance { differing, max_level, mean_level, rms_level, .. } = point.error;
+    fields.extend([String::new(), differing.to_string(), max_level.to_string(), mean_level.to_string()]);
+    fields.push(rms_level.to_string());
+    fields.extend(std::iter::repeat_n(String::new(), 9));
+    fields.push(point.pixels.to_string());
+    fields.extend([point.inside.rms_level.to_string(), point.outside.rms_level.to_string(), runs(&point.wall)]);
     fields
 }

@@ -29,9 +29,14 @@ impl Canvas {
         self.shown.iter().all(|shown| *shown).then_some(self.rgb.as_slice())
     }
 
+    /// The page shows something else in place of all of it.
+    pub fn hide(&mut self) {
+        self.shown.fill(false);
+    }
+
     /// The page is to show a coarse picture in place of whatever it shows: each of its pixels for `step` × `step`.
     pub fn coarse(&mut self, step: u32, rgb: Vec<u8>) -> Patch {
-        self.shown.fill(false);
+        self.hide();
         let (width, height) = self.size;
         Patch { size: self.size, step, parts: vec![(Rectangle { x: 0, y: 0, width, height }, rgb)] }
     }

@@ -7,6 +7,7 @@ use std::time::Duration;
 use serde_json::Value;
 use tokio::sync::Notify;
 
+use super::attention::Attention;
 use super::pose::Range;
 use super::protocol::FromPage;
 use super::wishes::Wishes;
@@ -73,6 +74,7 @@ struct State {
     start: Wishes,
     wishes: Wishes,
     range: Range,
+    attention: Attention,
     /// Grows with every change of the wishes.
     version: u64,
     errands: Errands,
@@ -91,6 +93,7 @@ impl Desk {
             wishes: start.clone(),
             start,
             range,
+            attention: Attention::default(),
             version: 1,
             errands: Errands::default(),
             number: 0,
@@ -116,6 +119,11 @@ impl Desk {
             FromPage::Pick { x, y } => state.errands.pick = Some((*x, *y)),
             FromPage::Save => state.errands.save = true,
             FromPage::Measure => state.errands.measure = true,
+            FromPage::Gaze { .. } | FromPage::Attend { .. } => {
+                if let Err(why) = state.attention.heed(message) {
+                    state.errands.refusal = Some(why);
+                }
+            }
             wish => {
                 let before = state.wishes.clone();
                 if let Err(why) = state.wishes.heed(wish, state.range, &state.start) {
@@ -130,6 +138,11 @@ impl Desk {
     pub fn wishes(&self) -> (u64, Wishes) {
         let state = lock(&self.state);
         (state.version, state.wishes.clone())
+    }
+
+    /// How the page is looked at.
+    pub fn attention(&self) -> Attention {
+        lock(&self.state).attention
     }
 
     pub(super) fn version(&self) -> u64 {

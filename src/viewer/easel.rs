@@ -1,5 +1,7 @@
 //! The picture of one page on its way: coarse first, then finer, then the very picture that `trueray render` gives.
 
+mod sketching;
+
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -10,6 +12,7 @@ use super::canvas::Canvas;
 use super::desk::Desk;
 use super::measure::Measurement;
 use super::protocol::PICTURE_FILE;
+use super::sketch::{Plan, Sketcher};
 use super::wishes::Wishes;
 use crate::cpu::seen_through;
 use crate::effects::Effects;
@@ -21,6 +24,7 @@ use crate::precision::{Selection, Tier};
 use crate::scene::{Names, Scene};
 use crate::settings::Settings;
 use crate::tiles::TILE;
+use sketching::Sampled;
 
 /// A frame should take no longer while the eye moves, so that 30 of them fit into a second with their way to the page.
 const FRAME: f64 = 26.0;
@@ -35,8 +39,10 @@ const MAX_SLICE_BYTES: usize = 2 << 20;
 /// Pixels of a page's picture on each side at the most: browsers show no larger ones everywhere.
 const GREATEST_SIDE: u32 = 8192;
 
-/// A scene of more spheres is shown by so many of them while the eye moves.
-const PREVIEW_SPHERES: usize = 20_000;
+/// A scene of more spheres is shown by a part of them while the eye moves.
+const MANY_SPHERES: usize = 20_000;
+/// So many then.
+const PREVIEW_SPHERES: usize = 10_000;
 /// The eye is at rest when nothing was wished for so long: then all of a large scene is prepared, which takes its time.
 const REST: Duration = Duration::from_millis(250);
 
@@ -98,6 +104,8 @@ struct Subject {
     size: (u32, u32),
     /// Steps and samples of the pictures to come, last one first.
     to_come: Vec<(u32, u32)>,
+    /// What of the first of them is shown at once, where it is not all.
+    plan: Option<Arc<Plan>>,
     /// Time that all this took, in ms; counted with the first picture.
     took: f64,
 }
@@ -112,7 +120,9 @@ struct Pass<'g> {
     /// The first one after a wish, which is shown at once and not given up for a newer wish.
     first: bool,
     next_row: u32,
-    /// Rows so far, where they are shown at once.
+    /// What of it is shown at once, where it is not all.
+    plan: Option<Arc<Plan>>,
+    /// Rows so far, where they are shown at once; all of the picture, as far as it is known, where a part is.
     rgb: Vec<u8>,
     took: Duration,
 }
@@ -122,6 +132,8 @@ struct Pass<'g> {
 struct Shown {
     step: u32,
     samples: u32,
+    /// Where not all pixels are sampled.
+    sampled: Option<Sampled>,
     frame: f64,
     times: Times,
     not_finite: u64,
@@ -136,6 +148,7 @@ pub(super) struct Easel<'g> {
     pub(super) pace: Pace,
     subject: Option<Subject>,
     pass: Option<Pass<'g>>,
+    sketcher: Sketcher<'g>,
     shown: Shown,
     not_finite: u64,
     measurement: Option<Measurement>,
@@ -170,6 +183,7 @@ impl<'g> Easel<'g> {
             pace,
             subject: None,
             pass: None,
+            sketcher: Sketcher::default(),
             shown: Shown::default(),
             not_finite: 0,
             measurement: None,
@@ -200,7 +214,7 @@ impl<'g> Easel<'g> {
     /// Whether there is something to do now.
     pub(super) fn wants_a_turn(&self) -> bool {
         let unfinished = || self.pass.is_some() || self.subject.as_ref().is_some_and(|s| !s.to_come.is_empty());
-        let wanted = self.is_behind() || unfinished() || self.tell || self.measurement.is_some();
+        let wanted = self.is_behind() || unfinished() || self.tell || self.measurement.is_some() || self.lacks_sketch();
         (wanted || self.desk.has_errands()) && self.desk.is_open() && !self.desk.is_closed()
     }
 
@@ -221,13 +235,13 @@ impl<'g> Easel<'g> {
     }
 
     fn try_turn(&mut self, setting: &mut Setting) -> Result<(), gpu::Error> {
-        let previews = setting.scene.spheres.len() > PREVIEW_SPHERES;
+        let previews = setting.scene.spheres.len() > MANY_SPHERES;
         if self.is_behind() && (previews || !self.pass.as_ref().is_some_and(|pass| pass.first)) {
             match self.preview {
-                _ if !previews => self.begin(setting),
+                _ if !previews => self.begin(setting)?,
                 Some((version, since)) if version == self.desk.version() => {
                     if since.elapsed() >= REST {
-                        self.begin(setting);
+                        self.begin(setting)?;
                     } else {
                         std::thread::sleep(Duration::from_millis(2));
                     }
@@ -252,6 +266,9 @@ impl<'g> Easel<'g> {
         if self.trouble.is_some() {
             return Ok(());
         }
+        if self.lacks_sketch() && self.desk.is_open() {
+            return self.prepare_sketch();
+        }
         self.measure(setting)
     }
 
@@ -271,14 +288,19 @@ impl<'g> Easel<'g> {
         let ladder = self.gpu.map_or(&Tier::ALL[..], Gpu::ladder);
         let tier = Selection::of(&settings.view.relative(&part), &effects, wishes.precision, ladder).tier;
         let backend = self.gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, tier));
+        if self.canvas.size() != size {
+            self.canvas = Canvas::new(size);
+        }
+        if self.preview_sketch(backend, &mut part, &settings, &effects, size)? {
+            self.preview = Some((version, Instant::now()));
+            self.send_state(setting);
+            return Ok(());
+        }
         let pace = Pace { prepare: 0.0, sample: self.preview_sample, measured: true };
         let step = pace.step(size, FRAME).max(2);
         let (mut engine, (width, height)) = coarse_engine(backend, &mut part, &settings, &effects, size, step)?;
         let mut rgb = vec![0; width as usize * height as usize * 3];
         engine.rows(0, &mut rgb)?;
-        if self.canvas.size() != size {
-            self.canvas = Canvas::new(size);
-        }
         self.preview_sample = engine.times().render_ms / (f64::from(width) * f64::from(height)).max(4096.0);
         self.desk.send_bytes(self.canvas.coarse(step, rgb).encode());
         self.preview = Some((version, Instant::now()));
@@ -286,7 +308,7 @@ impl<'g> Easel<'g> {
     }
 
     /// Looks at the newest wishes.
-    fn begin(&mut self, setting: &mut Setting) {
+    fn begin(&mut self, setting: &mut Setting) -> Result<(), gpu::Error> {
         let start = Instant::now();
         let (version, wishes) = self.desk.wishes();
         let settings = wishes.settings();
@@ -305,6 +327,15 @@ impl<'g> Easel<'g> {
             to_come.push((1, 1));
         }
         let mut step = self.pace.step(size, limit);
+        let mut plan = None;
+        // Before anything is measured a coarse picture is there first.
+        if step > 1 && self.pace.measured {
+            let backend = self.gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, selection.tier));
+            plan = self.sketcher.plan(backend, &self.desk.attention(), size, [limit, self.pace.sample])?;
+        }
+        if plan.is_some() {
+            step = 1;
+        }
         let mut coarse = Vec::new();
         while step > 1 {
             coarse.push((step, 1));
@@ -320,8 +351,9 @@ impl<'g> Easel<'g> {
             self.tell = true;
         }
         let took = ms(start.elapsed());
-        self.subject = Some(Subject { version, wishes, settings, effects, selection, size, to_come, took });
+        self.subject = Some(Subject { version, wishes, settings, effects, selection, size, to_come, plan, took });
         (self.pass, self.measurement, self.trouble) = (None, None, trouble);
+        Ok(())
     }
 
     /// Prepares the next picture.
@@ -331,27 +363,30 @@ impl<'g> Easel<'g> {
         let start = Instant::now();
         let settings = Settings { samples, ..subject.settings };
         let backend = self.gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, subject.selection.tier));
-        let (engine, size) = coarse_engine(backend, setting.scene, &settings, &subject.effects, subject.size, step)?;
+        let (mut engine, size) =
+            coarse_engine(backend, setting.scene, &settings, &subject.effects, subject.size, step)?;
+        let plan = subject.plan.take();
+        if plan.is_some() {
+            self.sketcher.ready(&mut engine);
+        }
         let took = start.elapsed() + Duration::from_secs_f64(subject.took / 1e3);
         let first = subject.took > 0.0;
         subject.took = 0.0;
         self.not_finite = 0;
-        self.pass = Some(Pass { engine, step, samples, size, first, next_row: 0, rgb: Vec::new(), took });
+        self.pass = Some(Pass { engine, step, samples, size, first, next_row: 0, plan, rgb: Vec::new(), took });
         Ok(())
     }
 
     /// Renders a slice, and shows it.
     fn paint(&mut self, setting: &mut Setting) -> Result<(), gpu::Error> {
         let Some(mut pass) = self.pass.take() else { return Ok(()) };
+        if let Some(plan) = pass.plan.clone() {
+            return self.paint_sketch(pass, &plan, setting);
+        }
         let start = Instant::now();
         let (width, height) = pass.size;
         let row_bytes = width as usize * 3;
-        let samples = f64::from(pass.samples * pass.samples);
-        let whole = pass.first && self.pace.forecast(pass.size, 1) < 4.0 * FRAME;
-        let row_ms = self.pace.sample * samples * f64::from(width);
-        let rows = if whole { height } else { (SLICE / row_ms).min(1e9) as u32 };
-        let rows = rows.min((MAX_SLICE_BYTES / row_bytes) as u32).next_multiple_of(TILE).max(TILE);
-        let rows = rows.min(height - pass.next_row);
+        let rows = self.rows_at_once(&pass);
         let mut rgb = vec![0; row_bytes * rows as usize];
         self.not_finite += pass.engine.rows(pass.next_row, &mut rgb)?;
         let first_row = pass.next_row;
@@ -376,6 +411,16 @@ impl<'g> Easel<'g> {
         Ok(())
     }
 
+    /// How many rows the next slice has.
+    fn rows_at_once(&self, pass: &Pass) -> u32 {
+        let (width, height) = pass.size;
+        let whole = pass.first && self.pace.forecast(pass.size, 1) < 4.0 * FRAME;
+        let row_ms = self.pace.sample * f64::from(pass.samples * pass.samples) * f64::from(width);
+        let rows = if whole { height } else { (SLICE / row_ms).min(1e9) as u32 };
+        let rows = rows.min((MAX_SLICE_BYTES / (width as usize * 3)) as u32).next_multiple_of(TILE).max(TILE);
+        rows.min(height - pass.next_row)
+    }
+
     /// Learns from a picture that is complete, and tells the page.
     fn finish(&mut self, pass: &Pass, setting: &mut Setting) {
         let times = pass.engine.times();
@@ -383,8 +428,13 @@ impl<'g> Easel<'g> {
         let samples = f64::from(width) * f64::from(height) * f64::from(pass.samples * pass.samples);
         let render = times.render_ms + times.read_back_ms;
         let frame = ms(pass.took);
-        self.pace.learn((frame - render - times.compile_ms).max(0.0), render, samples);
-        self.shown = Shown { step: pass.step, samples: pass.samples, frame, times, not_finite: self.not_finite };
+        let prepare = match pass.plan {
+            None => (frame - render - times.compile_ms).max(0.0),
+            Some(_) => self.pace.prepare,
+        };
+        self.pace.learn(prepare, render, samples);
+        let Pass { step, samples, .. } = *pass;
+        self.shown = Shown { step, samples, sampled: None, frame, times, not_finite: self.not_finite };
         self.send_state(setting);
     }
 
@@ -473,14 +523,15 @@ impl<'g> Easel<'g> {
         let scene_size = (scene.width, scene.height);
         let shrunk = *size != wishes.size(scene);
         let options = wishes.options((*size != scene_size).then_some(*size));
-        let Shown { step, samples, frame, times, not_finite } = self.shown;
+        let Shown { step, samples, sampled, frame, times, not_finite } = self.shown;
         let pose = wishes.pose.map(|pose| json!([pose.eye.to_array(), pose.look_at.to_array(), pose.up.to_array()]));
         self.desk.send_words(json!({
             "is": "state",
             "version": subject.version,
             "finished": self.finished(),
             "size": size, "shrunk": shrunk,
-            "step": step, "samples": samples * samples, "frame_ms": frame, "times": times, "not_finite": not_finite,
+            "step": step, "samples": samples * samples, "sampled": sampled, "attention": self.desk.attention(),
+            "frame_ms": frame, "times": times, "not_finite": not_finite,
             "device": self.gpu.map_or_else(|| "the CPU reference (f64)".to_owned(), |gpu| gpu.info.to_string()),
             "effects": effects.rows, "depth": effects.depth,
             "tier": selection.tier, "tier_reason": selection.reason,

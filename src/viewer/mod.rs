@@ -5,19 +5,24 @@
 //! messages that the page has not acknowledged; while it is full nothing is rendered for that page, so that a slow
 //! connection gets newer pictures and never a queue.
 
+mod attention;
 mod canvas;
 mod desk;
 mod easel;
 mod measure;
+mod places;
 mod pose;
 mod protocol;
 mod server;
+mod sketch;
 mod studio;
 mod watch;
 mod wishes;
 
+pub use attention::{Attention, Economy};
 pub use canvas::Canvas;
 pub use desk::{Bell, Desk, MAX_UNACKNOWLEDGED, Outgoing};
+pub use places::{PLACES, Places, SAMPLES, SLOTS, SampleColors};
 pub use pose::{Pose, Range};
 pub use protocol::{FromPage, PATCH, PICTURE_FILE, Patch, Rectangle};
 pub use server::{Access, Server};

@@ -5,6 +5,7 @@
 //! A patch is, in little-endian `u32`s: [`PATCH`], its number, the picture's width and height, the step k, the number of
 //! rectangles; then for each rectangle its left, top, width and height in pixels of the picture, followed by its pixels, 3
 //! bytes each, row by row. With step k > 1 each pixel that is sent stands for k × k of the picture, whose corner it has.
+//! Pictures of which a part is sampled go in messages of their own: `places.rs` has them.
 
 use serde::Deserialize;
 
@@ -66,6 +67,24 @@ pub enum FromPage {
         spp: Option<u32>,
         /// `--res`, or empty for the scene's own.
         res: Option<String>,
+    },
+    /// One looks at this place of the picture, in parts of it from its top left.
+    Gaze {
+        /// From the left.
+        x: f64,
+        /// From the top.
+        y: f64,
+    },
+    /// How moving pictures are sampled; what is absent stays.
+    Attend {
+        /// What they have fewer of: `foveated`, `sparse`, `coarse`.
+        economy: Option<String>,
+        /// The least part of the pixels that is sampled.
+        least: Option<f64>,
+        /// Radius of the fovea, in parts of the picture's shorter side.
+        radius: Option<f64>,
+        /// Its falloff, likewise.
+        falloff: Option<f64>,
     },
     /// Say what pixel (column `x`, row `y`) of the picture shows.
     Pick {

@@ -33,7 +33,12 @@ impl Wishes {
             FromPage::Zoom { by } => self.pose = Some(pose.zoomed(by, range)),
             FromPage::Reset => self.pose = start.pose,
             FromPage::Choose { .. } => self.choose(message, start)?,
-            FromPage::Ack { .. } | FromPage::Pick { .. } | FromPage::Save | FromPage::Measure => {}
+            FromPage::Ack { .. }
+            | FromPage::Pick { .. }
+            | FromPage::Save
+            | FromPage::Measure
+            | FromPage::Gaze { .. }
+            | FromPage::Attend { .. } => {}
         }
         Ok(())
     }

@@ -183,3 +183,29 @@ test('a window of one pixel and a picture of eight thousand', async () => {
   state = await settled(page, (state) => state.size[0] === 8000);
   assertSame(await pixels(page), rendered(place.path, 'scene.txt', options(state)));
 });
+
+test('a moving picture has fewer samples, or fewer pixels, and at rest it is that of render', async () => {
+  await settled(page);
+  await page.locator('#res').fill('1800x1400');
+  await page.keyboard.press('Enter');
+  await settled(page, (state) => state.size[0] === 1800);
+  const move = async (key, property) => {
+    await page.locator('#picture').focus();
+    await page.keyboard.down(key);
+    await page.waitForFunction(property);
+    if (process.env.SCREENSHOTS) await page.screenshot({ path: join(process.env.SCREENSHOTS, `moving-${key}.png`) });
+    await page.keyboard.up(key);
+    await page.waitForTimeout(300);
+    const state = await settled(page);
+    assertSame(await pixels(page), rendered(place.path, 'scene.txt', options(state)));
+  };
+  const box = await page.locator('#picture').boundingBox();
+  await page.mouse.move(box.x + box.width / 4, box.y + box.height / 2);
+  await move('ArrowLeft', () => window.trueray.sketches > 2 && window.trueray.state.sampled?.density.fovea?.center[0] === 450);
+  assert.match(await page.locator('#shown').textContent(), /the full picture/);
+  await page.locator('#economy').selectOption('sparse');
+  await page.locator('#least').selectOption('0.0625');
+  await move('ArrowRight', () => window.trueray.state.sampled && !window.trueray.state.sampled.density.fovea);
+  await page.locator('#economy').selectOption('coarse');
+  await move('ArrowUp', () => window.trueray.state.step > 1);
+});

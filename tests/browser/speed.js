@@ -1,15 +1,16 @@
 // How fast a page is: first pixels, frames while moving, key press to changed pixels.
-// Usage: node speed.js [SCENE]
+// Usage: node speed.js [SCENE [OPTION OF view]…], such as: node speed.js scene.txt --res 1920x1080
 import { dirname, basename, resolve } from 'node:path';
 import { browser, open, settled, view } from './support.js';
 
 const scene = resolve(process.argv[2] ?? '../../scenes/show/showcase.txt');
+const options = process.argv.slice(3);
 const median = (values) => values.toSorted((a, b) => a - b)[Math.floor(values.length / 2)];
 const chromium = await browser();
 
 /** The time from the command to the first pixels, of a client that connects as soon as it knows where. */
 async function firstPixels() {
-  const server = await view(basename(scene), { cwd: dirname(scene) });
+  const server = await view(basename(scene), { cwd: dirname(scene), options });
   const socket = new WebSocket(`${server.url.replace('http', 'ws')}ws`, { headers: { origin: new URL(server.url).origin } });
   socket.binaryType = 'arraybuffer';
   const time = await new Promise((done, failed) => {
@@ -31,7 +32,7 @@ try {
     console.log('first pixels after the command: not measured, needs Node 22 or node --experimental-websocket');
   }
 
-  const server = await view(basename(scene), { cwd: dirname(scene) });
+  const server = await view(basename(scene), { cwd: dirname(scene), options });
   const page = await open(chromium, server.url);
   await settled(page);
   const drawn = await page.evaluate(() => performance.getEntriesByType('navigation')[0].duration);
@@ -63,16 +64,19 @@ try {
 
   for (const key of ['ArrowLeft', 'KeyD']) {
     const before = await page.evaluate(() => [performance.now(), window.trueray.patches]);
-    const steps = [];
+    const [steps, parts] = [[], []];
     await page.keyboard.down(key);
     for (let i = 0; i < 30; i += 1) {
       await page.waitForTimeout(100);
-      steps.push(await page.evaluate(() => window.trueray.state.step));
+      const { step, sampled, size } = await page.evaluate(() => window.trueray.state);
+      steps.push(step);
+      parts.push(sampled ? sampled.pixels / (size[0] * size[1]) : 1);
     }
     const after = await page.evaluate(() => [performance.now(), window.trueray.patches]);
     await page.keyboard.up(key);
     const rate = (after[1] - before[1]) / (after[0] - before[0]) * 1000;
-    console.log(`moving with ${key}: ${rate.toFixed(1)} pictures a second, every ${median(steps)}th pixel (median)`);
+    console.log(`moving with ${key}: ${rate.toFixed(1)} pictures a second, every ${median(steps)}th pixel, ` +
+      `${(100 * median(parts)).toFixed(1)} % of them sampled (medians)`);
     await page.waitForTimeout(300);
     await settled(page);
   }

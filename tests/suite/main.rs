@@ -21,7 +21,10 @@ mod oracle;
 mod parse;
 mod pictures;
 mod refraction;
+mod sampling;
 mod shaders;
+#[cfg(feature = "view")]
+mod sketch;
 mod stress;
 mod study;
 mod support;

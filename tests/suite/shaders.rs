@@ -6,9 +6,12 @@ use trueray::accel::{Acceleration, Lists};
 use trueray::camera::Camera;
 use trueray::effects::{Effect, EffectSet, Effects, Request};
 use trueray::gpu::layout::{double, single};
-use trueray::gpu::{Kernel, Module, Places, SEE_TILES, SelfTest, Specialisation, Storage, WALK_PATHS, echo_layout};
+use trueray::gpu::{
+    Kernel, Module, Places, SEE_SAMPLES, SEE_TILES, SelfTest, Slots, Specialisation, Storage, WALK_PATHS, echo_layout,
+};
 
 use trueray::precision::Tier;
+use trueray::sampling::Fill;
 use trueray::settings::Settings;
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -45,6 +48,7 @@ fn every_effect_set_is_valid() {
                     storage,
                     places,
                     samples: 1,
+                    slots: Slots::Tiles,
                     count_rays,
                     workgroup: 64,
                 };
@@ -73,6 +77,7 @@ fn every_constant_is_an_override_and_every_override_is_set() {
             storage,
             places,
             samples: 2,
+            slots: Slots::Tiles,
             count_rays: true,
             workgroup: 64,
         };
@@ -157,7 +162,13 @@ fn the_small_modules_are_valid_and_have_their_entry_points() {
             assert_eq!(entry_points(paths), [WALK_PATHS, SEE_TILES]);
             let trees = Module::render(kernel, storage, places, samples, NonZeroU32::new(3));
             assert_eq!(entry_points(trees), [SEE_TILES]);
+            let list = Module::render_slots(kernel, storage, places, samples, None, Slots::List);
+            assert_eq!(entry_points(list), [WALK_PATHS, SEE_SAMPLES]);
         }
+    }
+    assert_eq!(entry_points(Module::flood()), ["jump"]);
+    for fill in Fill::ALL {
+        assert_eq!(entry_points(Module::fill(fill)), ["fill"]);
     }
     let many = Module::render(Kernel::Tier(Tier::Fast), Storage::ManyLights, Places::Both, false, None);
     assert_eq!(entry_points(many), [WALK_PATHS, SEE_TILES]);

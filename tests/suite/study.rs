@@ -5,9 +5,12 @@ use std::process::{Command, Output, Stdio};
 use trueray::effects::{Effect, Effects};
 use trueray::gpu::Gpu;
 use trueray::precision::{Request, Selection, Tier};
+use trueray::sampling::Fill;
 use trueray::scene::Scene;
 use trueray::settings::Settings;
-use trueray::study::{COLUMNS, Contestant, Distance, Plan, Sample, Study, Subject, csv, hard_cases, html, study};
+use trueray::study::{
+    COLUMNS, Contestant, Distance, Manner, Plan, Sample, Study, Subject, csv, hard_cases, html, study,
+};
 
 use crate::support::{gpu, scene_of};
 
@@ -98,6 +101,32 @@ fn a_study_has_every_point_and_its_errors_shrink() {
     assert!(report.contains("Reflection depth") && report.contains("What each effect costs"), "{report}");
 }
 
+/// The full picture is first; many samples err less than few; the fovea is always exact; every time is there.
+#[test]
+fn a_study_says_what_samples_of_a_part_of_the_pixels_cost() {
+    let Some(gpu) = gpu("a_study_says_what_samples_of_a_part_of_the_pixels_cost") else { return };
+    let mut scene = tiny();
+    (scene.width, scene.height) = (120, 90);
+    for device in [None, Some(&*gpu)] {
+        let series = measure(&scene, device, &Settings::classic()).partial;
+        assert_eq!(series.points.len(), 1 + 2 * 4 * 2);
+        assert_eq!((series.points[0].manner, series.points[0].pixels), (Manner::Full, 120 * 90));
+        for point in &series.points {
+            assert_eq!((point.wall.runs().len(), point.rays.runs().len()), (series.runs, series.runs));
+            assert!(point.wall.median() >= point.rays.median() && point.rays.median() > 0.0);
+            let is_exact = point.manner == Manner::Full;
+            assert_eq!((point.error.differing == 0, point.outside.differing == 0), (is_exact, is_exact));
+            assert_eq!(point.inside.differing == 0, point.manner != Manner::Sparse);
+        }
+        for (manner, fill) in [Manner::Sparse, Manner::Foveated].into_iter().flat_map(|m| Fill::ALL.map(|f| (m, f))) {
+            let line = series.points.iter().filter(|point| point.manner == manner && point.fill == fill);
+            let line: Vec<_> = line.map(|point| (point.pixels, point.error.rms_level)).collect();
+            assert!(line.windows(2).all(|pair| pair[1].0 < pair[0].0), "{line:?}");
+            assert!(line[line.len() - 1].1 > line[0].1, "{line:?}");
+        }
+    }
+}
+
 #[test]
 fn a_study_without_a_device_says_what_it_skips() {
     let study = measure(&tiny(), None, &Settings::classic());
@@ -149,7 +178,9 @@ fn files_are_complete_and_depend_on_the_measurements_only() {
     assert_eq!(fields(lines[0]), COLUMNS);
     let rows = studies.iter().map(|study| {
         let series = [&study.precision, &study.depth, &study.samples];
-        series.iter().map(|series| series.points.len()).sum::<usize>() + study.effect_cost.variants.len()
+        series.iter().map(|series| series.points.len()).sum::<usize>()
+            + study.effect_cost.variants.len()
+            + study.partial.points.len()
     });
     assert_eq!(lines.len(), 1 + rows.sum::<usize>());
     for line in &lines[1..] {
@@ -162,7 +193,7 @@ fn files_are_complete_and_depend_on_the_measurements_only() {
     }
 
     let page = html(&studies, None, "trueray study 'a <b>'");
-    assert_eq!(page.matches("<svg").count(), 6 * studies.len());
+    assert_eq!(page.matches("<svg").count(), 8 * studies.len());
     assert_eq!(page.matches("<svg").count(), page.matches("</svg>").count());
     assert!(page.contains("tiny, &lt;scene&gt;") && page.contains("a &lt;b&gt;"));
     for foreign in ["http:", "https:", "//", "src=", "href=", "url(", "@import", "<script", "NaN", "inf"] {

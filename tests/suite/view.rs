@@ -19,20 +19,20 @@ use trueray::precision::{self, Selection};
 use trueray::scene::{Scene, parse};
 use trueray::settings::Settings;
 use trueray::viewer::{
-    Access, Canvas, Desk, FromPage, MAX_PAGES, MAX_UNACKNOWLEDGED, Outgoing, Patch, Pose, Range, Studio, Watched,
-    Wishes, watch,
+    Access, Canvas, Desk, FromPage, MAX_PAGES, MAX_UNACKNOWLEDGED, Outgoing, PLACES, Patch, Pose, Range, SAMPLES,
+    SLOTS, Studio, Watched, Wishes, watch,
 };
 
 use crate::support::gpu;
 
-const SCENE: &str = "NEAR 1\nLEFT -1\nRIGHT 1\nBOTTOM -1\nTOP 1\nRES 90 70\nSPHERE a 0 0 -10 2 4 2 0.5 0 0 1 1 0.9 0 50\n\
+pub(crate) const SCENE: &str = "NEAR 1\nLEFT -1\nRIGHT 1\nBOTTOM -1\nTOP 1\nRES 90 70\nSPHERE a 0 0 -10 2 4 2 0.5 0 0 1 1 0.9 0 50\n\
                      SPHERE b 4 4 -10 1 2 1 0 0.5 0 1 1 0.9 0.3 50\nLIGHT l 0 0 0 0.9 0.9 0.9\nBACK 0.2 0.5 1\n\
                      AMBIENT 0.2 0.2 0.2\n";
 
 /// Long enough for kernels to be compiled on a machine that has other things to do.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-fn scene(text: &str) -> Scene {
+pub(crate) fn scene(text: &str) -> Scene {
     parse("scene.txt", text.as_bytes()).scene.unwrap()
 }
 
@@ -47,7 +47,7 @@ fn wishes() -> Wishes {
 }
 
 /// A studio at work on a scene file.
-struct Work {
+pub(crate) struct Work {
     studio: Arc<Studio>,
     thread: Option<JoinHandle<()>>,
     folder: tempfile::TempDir,
@@ -56,7 +56,7 @@ struct Work {
 }
 
 impl Work {
-    fn new(text: &str, on_device: bool) -> Self {
+    pub(crate) fn new(text: &str, on_device: bool) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("scene.txt");
         std::fs::write(&path, text).unwrap();
@@ -73,8 +73,16 @@ impl Work {
         Self { studio, thread, folder, gpu }
     }
 
-    fn page(&self) -> Page {
-        Page { desk: self.studio.sit_down().unwrap(), studio: Arc::clone(&self.studio), size: (0, 0), rgb: Vec::new() }
+    pub(crate) fn page(&self) -> Page {
+        Page {
+            desk: self.studio.sit_down().unwrap(),
+            studio: Arc::clone(&self.studio),
+            size: (0, 0),
+            rgb: Vec::new(),
+            places: std::array::from_fn(|_| Vec::new()),
+            ways: Vec::new(),
+            sketches: 0,
+        }
     }
 
     fn edit(&self, text: &str) {
@@ -92,21 +100,27 @@ impl Drop for Work {
 }
 
 /// What a page does: draws patches and acknowledges.
-struct Page {
-    desk: Arc<Desk>,
+pub(crate) struct Page {
+    pub(crate) desk: Arc<Desk>,
     studio: Arc<Studio>,
-    size: (u32, u32),
-    rgb: Vec<u8>,
+    pub(crate) size: (u32, u32),
+    pub(crate) rgb: Vec<u8>,
+    /// Of each slot, the way from each pixel to its nearest sample.
+    places: [Vec<[i8; 2]>; SLOTS as usize],
+    /// Those of the last picture of samples.
+    pub(crate) ways: Vec<[i8; 2]>,
+    /// Pictures of samples so far.
+    pub(crate) sketches: u32,
 }
 
 impl Page {
-    fn send(&self, message: &str) {
+    pub(crate) fn send(&self, message: &str) {
         self.desk.receive(&serde_json::from_str(message).unwrap());
         self.studio.bell.ring();
     }
 
     /// Draws the next message; words are returned.
-    fn next(&mut self) -> Option<Value> {
+    pub(crate) fn next(&mut self) -> Option<Value> {
         let start = Instant::now();
         let message = loop {
             if let Some(message) = self.desk.take() {
@@ -122,8 +136,17 @@ impl Page {
     fn handle(&mut self, message: Outgoing) -> Option<Value> {
         let (number, words) = match message {
             Outgoing::Bytes(bytes) => {
-                if let Some(patch) = Patch::decode(&bytes) {
-                    self.draw(&patch);
+                match u32::from_le_bytes(bytes[..4].try_into().unwrap()) {
+                    PLACES => {
+                        let ways = bytes[24..].as_chunks::<2>().0;
+                        self.places[bytes[20] as usize] = ways.iter().map(|way| way.map(u8::cast_signed)).collect();
+                    }
+                    SAMPLES => self.draw_samples(&bytes),
+                    _ => {
+                        if let Some(patch) = Patch::decode(&bytes) {
+                            self.draw(&patch);
+                        }
+                    }
                 }
                 (u64::from(u32::from_le_bytes(bytes[4..8].try_into().unwrap())), None)
             }
@@ -154,8 +177,30 @@ impl Page {
         }
     }
 
+    /// Shows each pixel as its nearest sample.
+    fn draw_samples(&mut self, message: &[u8]) {
+        let word = |index: usize| u32::from_le_bytes(message[4 * index..][..4].try_into().unwrap());
+        self.size = (word(2), word(3));
+        let width = self.size.0 as usize;
+        self.ways.clone_from(&self.places[word(5) as usize]);
+        assert_eq!(self.ways.len(), width * self.size.1 as usize);
+        let mut samples = message[24..].as_chunks::<3>().0.iter();
+        let mut pixels = vec![[0; 3]; self.ways.len()];
+        for (pixel, way) in pixels.iter_mut().zip(&self.ways) {
+            if *way == [0, 0] {
+                *pixel = *samples.next().unwrap();
+            }
+        }
+        assert_eq!((samples.next(), word(4) as usize), (None, message[24..].len() / 3));
+        let source = |(index, [dx, dy]): (usize, &[i8; 2])| {
+            pixels[index.wrapping_add_signed(isize::from(*dx) + isize::from(*dy) * width.cast_signed())]
+        };
+        self.rgb = self.ways.iter().enumerate().flat_map(source).collect();
+        self.sketches += 1;
+    }
+
     /// Draws until words have the property.
-    fn until(&mut self, property: impl Fn(&Value) -> bool) -> Value {
+    pub(crate) fn until(&mut self, property: impl Fn(&Value) -> bool) -> Value {
         let start = Instant::now();
         loop {
             assert!(start.elapsed() < PATIENCE, "never");
@@ -166,14 +211,14 @@ impl Page {
     }
 
     /// Draws until the full picture of the newest wishes is there.
-    fn finish(&mut self) -> Value {
+    pub(crate) fn finish(&mut self) -> Value {
         let version = self.desk.wishes().0;
         self.until(|words| words["finished"] == true && words["version"] == version)
     }
 }
 
 /// What `trueray render` gives for what a page wishes.
-fn rendered(gpu: Option<&Gpu>, scene: &Scene, wishes: &Wishes) -> Vec<u8> {
+pub(crate) fn rendered(gpu: Option<&Gpu>, scene: &Scene, wishes: &Wishes) -> Vec<u8> {
     let mut scene = scene.clone();
     (scene.width, scene.height) = wishes.size(&scene);
     let settings = wishes.settings();

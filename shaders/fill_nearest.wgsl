@@ -1,0 +1,5 @@
+// By the nearest sample: a Voronoi diagram.
+
+fn filled(pixel: vec2<i32>) -> u32 {
+    return color_of(owners[index(pixel)]);
+}

@@ -1,0 +1,157 @@
+//! Pixels without a sample filled on the device from those that have one; `src/cpu/fill.rs` does the same.
+
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+
+use wgpu::util::DeviceExt;
+
+use super::device::Gpu;
+use super::error::Error;
+use super::readable::Readable;
+use super::shader::Module;
+use crate::sampling::{Fill, NO_SAMPLE, Samples, flood_steps, packed};
+
+/// Invocations of a workgroup, which lie in a row.
+const GROUP: u32 = 64;
+
+/// The kernels that fill pictures.
+#[derive(Debug)]
+pub struct Reconstructor<'a> {
+    gpu: &'a Gpu,
+    jump: wgpu::ComputePipeline,
+    fills: HashMap<Fill, wgpu::ComputePipeline>,
+}
+
+impl<'a> Reconstructor<'a> {
+    /// Compiles the kernel that finds nearest samples.
+    pub fn new(gpu: &'a Gpu) -> Result<Self, Error> {
+        Ok(Self { gpu, jump: pipeline(gpu, &Module::flood(), "jump")?, fills: HashMap::new() })
+    }
+
+    /// Where the nearest sample of each pixel lies, packed, pixels in reading order.
+    pub fn nearest_samples(&self, samples: &Samples) -> Result<Vec<u32>, Error> {
+        let owners = self.flood(samples)?;
+        owners.read(self.gpu, pixel_count(samples), <[u32]>::to_vec)
+    }
+
+    /// The whole picture from `colors`, one for each of `samples`, 3 bytes a pixel.
+    pub fn filled(&mut self, samples: &Samples, colors: &[[u8; 3]], fill: Fill) -> Result<Vec<u8>, Error> {
+        let gpu = self.gpu;
+        let kernel = match self.fills.entry(fill) {
+            Entry::Occupied(entry) => entry.into_mut(),
+            Entry::Vacant(entry) => entry.insert(pipeline(gpu, &Module::fill(fill), "fill")?),
+        }
+        .clone();
+        let owners = self.flood(samples)?;
+        let mut known = vec![0_u32; pixel_count(samples)];
+        for (pixel, &[r, g, b]) in samples.pixels.iter().zip(colors) {
+            known[index(samples, *pixel)] = u32::from_le_bytes([r, g, b, 0]);
+        }
+        let picture = gpu.checked("filling a picture", || {
+            let known = storage(gpu, &known);
+            let picture = Readable::new(gpu, pixel_count(samples) as u64);
+            let params = params(gpu, samples, 0);
+            let bound = [&params, &owners.buffer, &known, &picture.buffer];
+            run(gpu, &kernel, samples, &[bind(gpu, &kernel, &bound)]);
+            picture
+        })?;
+        picture.read(gpu, pixel_count(samples), |pixels| {
+            let mut rgb = Vec::with_capacity(pixels.len() * 3);
+            for pixel in pixels {
+                let [r, g, b, _] = pixel.to_le_bytes();
+                rgb.extend([r, g, b]);
+            }
+            rgb
+        })
+    }
+
+    /// The nearest samples, on the device.
+    fn flood(&self, samples: &Samples) -> Result<Readable, Error> {
+        let gpu = self.gpu;
+        let bytes = pixel_count(samples) as u64 * 4;
+        let limit = gpu.info.max_storage_binding.min(gpu.info.max_buffer);
+        if bytes > limit {
+            let message = format!("the nearest samples take {bytes} bytes, but {} binds {limit} at the most", gpu.info);
+            return Err(Error::NoDevice(message));
+        }
+        let mut owners = vec![NO_SAMPLE; pixel_count(samples)];
+        for pixel in &samples.pixels {
+            owners[index(samples, *pixel)] = packed(*pixel);
+        }
+        gpu.checked("finding nearest samples", || {
+            let first = storage(gpu, &owners);
+            let mut ends = [Readable::new(gpu, owners.len() as u64), Readable::new(gpu, owners.len() as u64)];
+            let mut groups = Vec::new();
+            let mut from = &first;
+            for (pass, step) in flood_steps(samples.reach).into_iter().enumerate() {
+                let to = &ends[pass % 2].buffer;
+                groups.push(bind(gpu, &self.jump, &[&params(gpu, samples, step), from, to]));
+                from = to;
+            }
+            run(gpu, &self.jump, samples, &groups);
+            ends.swap(0, (groups.len() - 1) % 2);
+            let [last, _] = ends;
+            last
+        })
+    }
+}
+
+fn pixel_count(samples: &Samples) -> usize {
+    samples.size.0 as usize * samples.size.1 as usize
+}
+
+fn index(samples: &Samples, [x, y]: [u32; 2]) -> usize {
+    y as usize * samples.size.0 as usize + x as usize
+}
+
+/// What `Flood` of `shaders/flood.wgsl` reads.
+fn params(gpu: &Gpu, samples: &Samples, step: u32) -> wgpu::Buffer {
+    let contents = [samples.size.0, samples.size.1, step, 0];
+    let contents = bytemuck::cast_slice(&contents);
+    let usage = wgpu::BufferUsages::UNIFORM;
+    gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
+}
+
+fn storage(gpu: &Gpu, values: &[u32]) -> wgpu::Buffer {
+    let (contents, usage) = (bytemuck::cast_slice(values), wgpu::BufferUsages::STORAGE);
+    gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
+}
+
+fn pipeline(gpu: &Gpu, module: &Module, entry_point: &str) -> Result<wgpu::ComputePipeline, Error> {
+    let module = gpu.shader_module(module)?;
+    gpu.checked("compiling the kernels that fill pictures", || {
+        gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(entry_point),
+            layout: None,
+            module: &module,
+            entry_point: Some(entry_point),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        })
+    })
+}
+
+/// Binds buffers in the order of their bindings.
+fn bind(gpu: &Gpu, pipeline: &wgpu::ComputePipeline, buffers: &[&wgpu::Buffer]) -> wgpu::BindGroup {
+    let bound = (0..).zip(buffers);
+    let entries: Vec<_> =
+        bound.map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() }).collect();
+    let layout = pipeline.get_bind_group_layout(0);
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries })
+}
+
+/// Runs a kernel over all pixels, once for each group.
+fn run(gpu: &Gpu, pipeline: &wgpu::ComputePipeline, samples: &Samples, groups: &[wgpu::BindGroup]) {
+    let (width, height) = samples.size;
+    // A dispatch of its own for each, so that none is long.
+    for group in groups {
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, group, &[]);
+            pass.dispatch_workgroups(width.div_ceil(GROUP), height, 1);
+        }
+        gpu.queue.submit([encoder.finish()]);
+    }
+}

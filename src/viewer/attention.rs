@@ -1,0 +1,106 @@
+//! How the picture is shown while the eye moves: where samples are, and how many.
+
+use serde::Serialize;
+
+use super::protocol::FromPage;
+use crate::sampling::{Density, Fovea};
+
+/// What a moving picture has fewer of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Economy {
+    /// Samples away from where one looks.
+    Foveated,
+    /// Samples everywhere.
+    Sparse,
+    /// Pixels.
+    Coarse,
+}
+
+/// What a page says of how it is looked at; pictures at rest do not depend on it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Attention {
+    /// What a moving picture has fewer of.
+    pub economy: Economy,
+    /// The least part of the pixels that is sampled.
+    pub least: f64,
+    /// Radius and falloff of the fovea, in parts of the picture's shorter side.
+    pub fovea: [f64; 2],
+    /// Where one looks, in parts of the picture from its top left.
+    pub gaze: [f64; 2],
+}
+
+impl Attention {
+    /// The least densities that a page can ask for; below, nearest samples would be too far away for two bytes.
+    pub const DENSITIES: [f64; 2] = [1.0 / 64.0, 1.0];
+
+    /// Does what the page asks; a message says why it cannot be.
+    pub(super) fn heed(&mut self, message: &FromPage) -> Result<(), String> {
+        match message {
+            FromPage::Gaze { x, y } => self.gaze = [x, y].map(|part| part.clamp(0.0, 1.0)),
+            FromPage::Attend { economy, least, radius, falloff } => {
+                let mut attention = *self;
+                if let Some(name) = economy {
+                    attention.economy = match name.as_str() {
+                        "foveated" => Economy::Foveated,
+                        "sparse" => Economy::Sparse,
+                        "coarse" => Economy::Coarse,
+                        _ => return Err(format!("no moving picture is called '{name}'")),
+                    };
+                }
+                if let Some(least) = *least {
+                    let [low, high] = Self::DENSITIES;
+                    if !(low..=high).contains(&least) {
+                        return Err(format!("the least density is from {low} to {high}"));
+                    }
+                    attention.least = least;
+                }
+                if let Some(radius) = *radius {
+                    if !(0.0..=1.0).contains(&radius) {
+                        return Err("the radius of the fovea is from 0 to 1".into());
+                    }
+                    attention.fovea[0] = radius;
+                }
+                if let Some(falloff) = *falloff {
+                    if !(0.01..=10.0).contains(&falloff) {
+                        return Err("the falloff is from 0.01 to 10".into());
+                    }
+                    attention.fovea[1] = falloff;
+                }
+                *self = attention;
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Number of ever cheaper maps.
+    pub(super) fn levels(&self) -> usize {
+        match self.economy {
+            Economy::Foveated | Economy::Sparse => 5,
+            Economy::Coarse => 0,
+        }
+    }
+
+    /// The map at a level, 0 being the densest.
+    pub(super) fn density(&self, level: usize, size: (u32, u32)) -> Density {
+        // From half of the pixels, or less, to the least in equal ratios.
+        let ratio = level.min(4) as f64 / 4.0;
+        let part = self.least.max(0.5).powf(1.0 - ratio) * self.least.powf(ratio);
+        if self.economy != Economy::Foveated {
+            return Density::sparse(part);
+        }
+        let unit = f64::from(size.0.min(size.1));
+        // The fovea shrinks as well.
+        let scale = [1.0, 1.0, 0.8, 0.5, 0.25][level.min(4)];
+        let [radius, falloff] = self.fovea.map(|part| part * unit * scale);
+        let center = [self.gaze[0] * f64::from(size.0), self.gaze[1] * f64::from(size.1)].map(f64::round);
+        Density { fovea: Some(Fovea { center, radius, falloff }), far: part }
+    }
+}
+
+impl Default for Attention {
+    fn default() -> Self {
+        Self { economy: Economy::Foveated, least: 1.0 / 64.0, fovea: [0.15, 0.15], gaze: [0.5, 0.5] }
+    }
+}
