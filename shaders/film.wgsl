@@ -4,11 +4,15 @@
 // With COUNT_RAYS, the shadow rays (low half) and reflection rays (high half) of each slot.
 @group(0) @binding(8) var<storage, read_write> ray_counts: array<u32>;
 
+// Whether the device has ended a loop before its time: some do after 65,535 turns, without a word.
+var<private> is_cut: bool;
+
 var<private> shadow_rays: u32;
 var<private> reflection_rays: u32;
 
 // For a slot of which nothing has been counted yet.
 fn begin_counts(slot: u32) {
+    is_cut = false;
     shadow_rays = 0u;
     reflection_rays = 0u;
     if COUNT_RAYS {

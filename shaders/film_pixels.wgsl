@@ -4,5 +4,5 @@
 @group(0) @binding(7) var<storage, read_write> pixels: array<u32>;
 
 fn finish(slot: u32, color: vec3r) {
-    pixels[slot] = packed_pixel(color);
+    pixels[slot] = packed_pixel(color) | select(0u, STATUS_CUT << 24u, is_cut);
 }

@@ -3,5 +3,7 @@
 @group(0) @binding(7) var<storage, read_write> colors: array<vec3r>;
 
 fn finish(slot: u32, color: vec3r) {
-    colors[slot] = color;
+    // No colour at all, as the status of the pixel will say.
+    var zero = real(0.0);
+    colors[slot] = select(color, vec3r(real(1.0) / zero), is_cut);
 }

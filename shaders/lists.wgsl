@@ -40,6 +40,7 @@ fn nearest_in(cell: u32, before: Hit, ray: Ray, own: Own, range: Range) -> Hit {
             }
         }
     }
+    is_cut |= at != list.y;
     return nearest;
 }
 
@@ -55,7 +56,25 @@ fn nearest_seen(ray: Ray, pixel: vec2<u32>) -> Hit {
 fn nearest_large(before: Hit, ray: Ray, own: Own, range: Range) -> Hit {
     // The last cell has them.
     let cells = params.grid_cells;
-    return nearest_in(params.grid_first + cells.x * cells.y * cells.z, before, ray, own, range);
+    let list = cell_at(params.grid_first + cells.x * cells.y * cells.z);
+    var nearest = before;
+    var at = list.x;
+    if at < list.y {
+        // Two in each turn, of which there may not be enough for deep trees; where their number is odd the last one twice, which
+        // changes nothing.
+        loop {
+            let first = entry_at(at);
+            nearest = nearer_of(nearest, ray, body_of(first), first, own, range);
+            let second = entry_at(min(at + 1u, list.y - 1u));
+            nearest = nearer_of(nearest, ray, body_of(second), second, own, range);
+            at += 2u;
+            if at >= list.y {
+                break;
+            }
+        }
+    }
+    is_cut |= at < list.y;
+    return nearest;
 }
 
 // First and one past the last entry of the list for a direction from a light; both 0 where no sphere is.
@@ -96,11 +115,12 @@ fn any_hit(ray: Ray, own: Own, light: u32, is_asked: bool) -> bool {
     let distance = sqrt(dot(from_light, from_light)) + params.light_slack;
     let t_min = params.shadow_t_min;
     var blocked = false;
+    var is_last = false;
     var at = list.x;
     if at < list.y {
         loop {
             let body = body_of(entry_at(at));
-            let is_last = is_behind(body, position, distance);
+            is_last = is_behind(body, position, distance);
             blocked = !is_last & blocks(ray, body, own, t_min);
             at++;
             if is_last || blocked || at == list.y {
@@ -108,5 +128,6 @@ fn any_hit(ray: Ray, own: Own, light: u32, is_asked: bool) -> bool {
             }
         }
     }
+    is_cut |= !is_last & !blocked & (at != list.y);
     return blocked;
 }

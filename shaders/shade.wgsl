@@ -75,8 +75,15 @@ fn local_color(surface: Surface, material: Material, is_seen: bool) -> vec3r {
         color = params.ambient * material.color * material.ka;
     }
     if DIFFUSE || SPECULAR {
-        for (var index = 0u; index < light_count(); index++) {
-            color = with_light(color, index, surface, material, is_seen);
+        var index = 0u;
+        if index < light_count() {
+            loop {
+                color = with_light(color, index, surface, material, is_seen);
+                index++;
+                if index >= light_count() {
+                    break;
+                }
+            }
         }
     }
     return color;

@@ -8,8 +8,13 @@
 fn see_samples(@builtin(global_invocation_id) id: vec3<u32>) {
     let pixel = pixel_list[id.x];
     let first_slot = id.x * SAMPLES * SAMPLES;
-    for (var sample = 0u; sample < SAMPLES * SAMPLES; sample++) {
+    var sample = 0u;
+    loop {
         let ray = primary_ray(pixel * SAMPLES + vec2(sample % SAMPLES, sample / SAMPLES));
         follow(ray, nearest_seen(ray, pixel), first_slot + sample);
+        sample++;
+        if sample == SAMPLES * SAMPLES {
+            break;
+        }
     }
 }

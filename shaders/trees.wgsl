@@ -82,6 +82,7 @@ fn tree_color(primary: Ray, seen: Hit) -> vec3r {
             reflection_rays++;
         }
     }
+    is_cut |= count != 0u;
     return color;
 }
 

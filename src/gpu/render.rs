@@ -344,9 +344,9 @@ impl<'a> GpuRenderer<'a> {
         let start = Instant::now();
         let width = self.width;
         let place = |pixels: &[u32]| place_tiles(pixels, tiles, first, width, rgb);
-        let not_finite = work.pixels.read(self.gpu, tiles.len() * TILE_PIXELS, place)?;
+        let statuses = work.pixels.read(self.gpu, tiles.len() * TILE_PIXELS, place)?;
         self.times.read_back += start.elapsed();
-        Ok(not_finite)
+        statuses.checked(self.gpu)
     }
 
     /// Adds up the ray counts of the last dispatch of so many pixels.
@@ -505,15 +505,44 @@ fn check_fits(gpu: &Gpu, packed: &Packed, lists: &[Contents; 2]) -> Result<(), E
     }
 }
 
-/// Copies pixels in tile order to their places in rows; returns how many are not finite.
-fn place_tiles(pixels: &[u32], tiles: &[[u32; 2]], first: u32, width: u32, rgb: &mut [u8]) -> u64 {
+/// How many pixels say what of themselves: `STATUS_*` of `shaders/quantize.wgsl`.
+#[derive(Debug, Clone, Copy, Default)]
+struct Statuses {
+    not_finite: u64,
+    cut: u64,
+}
+
+impl Statuses {
+    fn add(&mut self, status: u8) {
+        self.not_finite += u64::from(status & 1 != 0);
+        self.cut += u64::from(status & 2 != 0);
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self { not_finite: self.not_finite + other.not_finite, cut: self.cut + other.cut }
+    }
+
+    /// How many are not finite; an error where the device has left out something.
+    fn checked(self, gpu: &Gpu) -> Result<u64, Error> {
+        match self.cut {
+            0 => Ok(self.not_finite),
+            cut => Err(Error::NoDevice(format!(
+                "{cut} pixels need more turns of a loop than {} has for them; `--device cpu` has no such limit",
+                gpu.info
+            ))),
+        }
+    }
+}
+
+/// Copies pixels in tile order to their places in rows; returns what their statuses say.
+fn place_tiles(pixels: &[u32], tiles: &[[u32; 2]], first: u32, width: u32, rgb: &mut [u8]) -> Statuses {
     let row_bytes = width as usize * 3;
     let tile_row_bytes = row_bytes * TILE as usize;
     let place_row = |(tile_row, band): (usize, &mut [u8])| {
         let y = first + tile_row as u32 * TILE;
         let start = tiles.partition_point(|tile| tile[1] < y);
         let end = tiles.partition_point(|tile| tile[1] <= y);
-        let mut not_finite = 0;
+        let mut statuses = Statuses::default();
         for (tile, pixels) in tiles[start..end].iter().zip(pixels[start * TILE_PIXELS..].chunks(TILE_PIXELS)) {
             let across = TILE.min(width - tile[0]) as usize;
             for (row, pixels) in band.chunks_mut(row_bytes).zip(pixels.chunks(TILE as usize)) {
@@ -521,11 +550,11 @@ fn place_tiles(pixels: &[u32], tiles: &[[u32; 2]], first: u32, width: u32, rgb: 
                 for (target, pixel) in row.as_chunks_mut::<3>().0.iter_mut().zip(pixels) {
                     let [r, g, b, status] = pixel.to_le_bytes();
                     *target = [r, g, b];
-                    not_finite += u64::from(status != 0);
+                    statuses.add(status);
                 }
             }
         }
-        not_finite
+        statuses
     };
-    rgb.par_chunks_mut(tile_row_bytes).enumerate().map(place_row).sum()
+    rgb.par_chunks_mut(tile_row_bytes).enumerate().map(place_row).reduce(Statuses::default, Statuses::plus)
 }

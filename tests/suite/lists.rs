@@ -145,3 +145,39 @@ fn the_device_leaves_out_nothing_at_any_tier() {
         }
     }
 }
+
+/// More spheres under one tile than some devices have turns of a loop for: the whole picture or an error, never a part of it.
+#[test]
+fn a_list_that_is_too_long_for_a_device_is_no_other_picture() {
+    let Some(gpu) = crate::support::gpu("a_list_that_is_too_long_for_a_device_is_no_other_picture") else { return };
+    let mut scene = scene_of("AMBIENT 1 1 1");
+    (scene.width, scene.height) = (8, 8);
+    // Each hides all before it, so that only who comes to the end sees the last one.
+    scene.spheres = (0..80_000_u32)
+        .map(|index| Sphere {
+            center: DVec3::new(0.0, 0.0, -5.0),
+            scale: DVec3::new(2.0, 2.0, 1.0 + f64::from(index) * 1e-5),
+            color: DVec3::splat(f64::from(index) / 80_000.0),
+            ka: 1.0,
+            kd: 0.0,
+            ks: 0.0,
+            kr: 0.0,
+            n: 1.0,
+            kt: 0.0,
+            eta: 1.0,
+        })
+        .collect();
+    (0..scene.spheres.len()).for_each(|_| scene.sphere_names.push("s"));
+    let settings = Settings::classic();
+    let expected = cpu(&scene, &settings, Rounding::DOUBLE);
+    for kernel in Tier::ALL.into_iter().filter_map(|tier| gpu.kernel(tier).ok()) {
+        let effects = Effects::of(&scene, &settings);
+        let mut rgb = vec![0; scene.width as usize * scene.height as usize * 3];
+        let mut renderer =
+            GpuRenderer::with_rounding(&gpu, &scene, &settings, &effects, kernel, kernel.rounding()).unwrap();
+        match renderer.rows(0, &mut rgb) {
+            Ok(_) => assert_eq!(first_difference(&rgb, &expected, &scene), None, "{kernel:?}"),
+            Err(error) => assert!(error.to_string().contains("turns of a loop"), "{kernel:?}: {error}"),
+        }
+    }
+}

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::{GpuRenderer, MAX_DISPATCH_TILES, TILE_PIXELS, Work};
+use super::{GpuRenderer, MAX_DISPATCH_TILES, Statuses, TILE_PIXELS, Work};
 use crate::gpu::error::Error;
 use crate::gpu::shader::Slots;
 
@@ -54,16 +54,16 @@ impl GpuRenderer<'_> {
     /// Puts the pixels of the last dispatch to their places in `colors`.
     fn read_list(&mut self, work: &Work, places: &[usize], colors: &mut [[u8; 3]]) -> Result<u64, Error> {
         let start = Instant::now();
-        let not_finite = work.pixels.read(self.gpu, places.len(), |values| {
-            let mut not_finite = 0;
+        let statuses = work.pixels.read(self.gpu, places.len(), |values| {
+            let mut statuses = Statuses::default();
             for (value, &place) in values.iter().zip(places) {
                 let [r, g, b, status] = value.to_le_bytes();
                 colors[place] = [r, g, b];
-                not_finite += u64::from(status != 0);
+                statuses.add(status);
             }
-            not_finite
+            statuses
         })?;
         self.times.read_back += start.elapsed();
-        Ok(not_finite)
+        statuses.checked(self.gpu)
     }
 }
