@@ -10,8 +10,8 @@ var<private> is_cut: bool;
 var<private> shadow_rays: u32;
 var<private> reflection_rays: u32;
 
-// For a slot of which nothing has been counted yet.
-fn begin_counts(slot: u32) {
+// Before anything is calculated for a slot.
+fn begin(slot: u32) {
     is_cut = false;
     shadow_rays = 0u;
     reflection_rays = 0u;

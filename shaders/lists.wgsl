@@ -40,7 +40,8 @@ fn nearest_in(cell: u32, before: Hit, ray: Ray, own: Own, range: Range) -> Hit {
             }
         }
     }
-    is_cut |= at != list.y;
+    // Not by the condition of the loop, which compilers may take for granted behind it.
+    is_cut |= at < list.y;
     return nearest;
 }
 
@@ -128,6 +129,6 @@ fn any_hit(ray: Ray, own: Own, light: u32, is_asked: bool) -> bool {
             }
         }
     }
-    is_cut |= !is_last & !blocked & (at != list.y);
+    is_cut |= !is_last & !blocked & (at < list.y);
     return blocked;
 }

@@ -63,7 +63,6 @@ fn shade(ray: Ray, hit: Hit, is_path: bool, slot: u32, before: vec3r, throughput
 
 // From the hit of a primary ray on.
 fn follow(ray: Ray, hit: Hit, slot: u32) {
-    begin_counts(slot);
     // What hits nothing shows the background; a reflection ray that hits nothing adds black.
     shade(ray, hit, true, slot, select(params.background, vec3r(), hit.found), real(1.0));
 }

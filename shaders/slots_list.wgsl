@@ -11,6 +11,7 @@ fn see_samples(@builtin(global_invocation_id) id: vec3<u32>) {
     var sample = 0u;
     loop {
         let ray = primary_ray(pixel * SAMPLES + vec2(sample % SAMPLES, sample / SAMPLES));
+        begin(first_slot + sample);
         follow(ray, nearest_seen(ray, pixel), first_slot + sample);
         sample++;
         if sample == SAMPLES * SAMPLES {

@@ -8,6 +8,7 @@
 fn see(tile: vec2<u32>, index: u32, first_slot: u32, sample: u32) {
     let pixel = tile + vec2(index % 8u, index / 8u);
     let ray = primary_ray(pixel * SAMPLES + vec2(sample % SAMPLES, sample / SAMPLES));
+    begin(first_slot + sample);
     follow(ray, nearest_seen(ray, tile), first_slot + sample);
 }
 

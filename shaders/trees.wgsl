@@ -88,7 +88,6 @@ fn tree_color(primary: Ray, seen: Hit) -> vec3r {
 
 // The colour of a primary ray with this hit.
 fn follow(ray: Ray, hit: Hit, slot: u32) {
-    begin_counts(slot);
     if hit.found {
         finish(slot, tree_color(ray, hit));
     } else {
