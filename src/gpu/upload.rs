@@ -99,7 +99,8 @@ pub(super) fn texels(gpu: &Gpu, contents: &Contents, components: u32) -> wgpu::T
         let staging = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
             size: (rows * row) as u64,
-            usage: wgpu::BufferUsages::COPY_SRC,
+            // Without MAP_WRITE there would be one more buffer on the way to it.
+            usage: wgpu::BufferUsages::MAP_WRITE | wgpu::BufferUsages::COPY_SRC,
             mapped_at_creation: true,
         });
         if let Ok(mut view) = staging.get_mapped_range_mut(..len as u64) {
