@@ -7,3 +7,15 @@ fn finish(slot: u32, color: vec3r) {
     var zero = real(0.0);
     colors[slot] = select(color, vec3r(real(1.0) / zero), is_cut);
 }
+
+// Row by row in the pixel.
+fn see_pixel(pixel: vec2<u32>, first_slot: u32) {
+    var sample = 0u;
+    loop {
+        see(pixel, first_slot, sample);
+        sample++;
+        if sample == SAMPLES * SAMPLES {
+            break;
+        }
+    }
+}

@@ -12,3 +12,11 @@ struct Stage {
 }
 
 @group(0) @binding(12) var<storage, read_write> stage: Stage;
+
+// One sample of one pixel: its primary ray, and what follows from it.
+fn see(pixel: vec2<u32>, first_slot: u32, sample: u32) {
+    let slot = first_slot + sample;
+    begin(slot);
+    let ray = primary_ray(pixel * SAMPLES + vec2(sample % SAMPLES, sample / SAMPLES));
+    follow(ray, nearest_seen(ray, pixel), slot);
+}
