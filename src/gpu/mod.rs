@@ -15,6 +15,7 @@ mod reconstruct;
 mod render;
 mod selftest;
 mod shader;
+mod tables;
 mod timestamps;
 mod tuned;
 mod upload;

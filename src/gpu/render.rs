@@ -1,6 +1,7 @@
 //! Rows of pixels from the device: tiles in dispatches that stay short, read back and put in place.
 
 mod list;
+mod place;
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -10,12 +11,13 @@ use wgpu::util::DeviceExt;
 
 use super::device::Gpu;
 use super::error::Error;
-use super::pack::{Contents, Packed, list_contents};
-use super::pipeline::{MAX_UNIFORM_LIGHTS, Resource, Specialisation, Stage, Stages};
+use super::pack::{Packed, list_contents};
+use super::pipeline::{Resource, Specialisation, Stage, Stages};
 use super::readable::Readable;
-use super::shader::{Kernel, Slots, Storage};
+use super::shader::{Kernel, Slots};
+use super::tables::{are_too_large, check_fits, list_resources, scene_resources};
 use super::timestamps::Timestamps;
-use super::upload::{empty_texels, max_texels, upload, upload_texels};
+use super::upload::empty_texels;
 use crate::accel::{Acceleration, Cover, Density, Rounding};
 use crate::camera::Camera;
 use crate::effects::{Effect, Effects};
@@ -24,6 +26,7 @@ use crate::precision::Tier;
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::tiles::TILE;
+use place::place_tiles;
 
 /// Pixels of a tile.
 const TILE_PIXELS: usize = (TILE * TILE) as usize;
@@ -130,7 +133,7 @@ impl<'a> GpuRenderer<'a> {
         let lists = |density| Acceleration::with_density(scene, &camera, specialisation.effects, rounding, density);
         let mut accel = lists(&tuning.density);
         // Finer lists than those of the class must not keep a scene from fitting.
-        if tuning.density != Density::DEFAULT && too_large(&list_sizes(gpu, &list_contents(&accel))).is_some() {
+        if tuning.density != Density::DEFAULT && are_too_large(gpu, &list_contents(&accel)) {
             accel = lists(&Density::DEFAULT);
         }
         let specialisation = specialisation.with_lists(&accel);
@@ -141,15 +144,10 @@ impl<'a> GpuRenderer<'a> {
         let picture_tiles = u64::from(scene.width.div_ceil(TILE)) * u64::from(scene.height.div_ceil(TILE));
         let covered_tiles = picture_tiles.min(cover.most());
         // The lists on the host go before the spheres take memory on the device.
-        let [cells, entries] = &list_tables;
-        let lists = [
-            (13, Resource::Texels(upload_texels(gpu, cells, 2)?)),
-            (17, Resource::Texels(upload_texels(gpu, entries, 1)?)),
-        ];
+        let mut resources = list_resources(gpu, &list_tables)?;
         drop(list_tables);
         drop(accel);
-        let mut resources = scene_resources(gpu, &packed, &specialisation)?;
-        resources.extend(lists);
+        resources.extend(scene_resources(gpu, &packed, &specialisation)?);
         let samples = u64::from(settings.samples * settings.samples);
         let tests_per_pixel = samples
             * (scene.spheres.len().min(64) as u64 + 1)
@@ -439,122 +437,4 @@ impl Work {
             capacity,
         }
     }
-}
-
-/// The buffers and textures of the scene, by binding, beside those of the lists.
-fn scene_resources(gpu: &Gpu, packed: &Packed, specialisation: &Specialisation) -> Result<Vec<(u32, Resource)>, Error> {
-    let (storage, uniform) = (wgpu::BufferUsages::STORAGE, wgpu::BufferUsages::UNIFORM);
-    // A binding of size 0 is not allowed.
-    let filled =
-        |contents: &Contents, usage| upload(gpu, contents, usage, contents.len().max(64)).map(Resource::Buffer);
-    let lit = |contents: &Contents, max: usize| match specialisation.storage {
-        // As many as there are: the kernel asks how many.
-        Storage::ManyLights => filled(contents, storage),
-        // Uniform buffers have a fixed number of elements.
-        _ => upload(gpu, contents, uniform, max * contents.element_size()).map(Resource::Buffer),
-    };
-    let texels = |contents| upload_texels(gpu, contents, 4).map(Resource::Texels);
-    let mut resources = vec![
-        (0, filled(&packed.params, uniform)?),
-        (1, texels(&packed.shapes[0])?),
-        (20, texels(&packed.shapes[1])?),
-        (2, texels(&packed.materials)?),
-        (3, lit(&packed.lights, MAX_UNIFORM_LIGHTS)?),
-        (4, texels(&packed.window)?),
-        (14, lit(&packed.faces, 6 * MAX_UNIFORM_LIGHTS)?),
-    ];
-    if specialisation.refraction.is_some() {
-        resources.push((5, filled(&packed.glasses, storage)?));
-    }
-    if let Some(([first_halves, second_halves], lights)) = &packed.low {
-        resources.extend([(9, texels(first_halves)?), (21, texels(second_halves)?)]);
-        resources.push((10, lit(lights, MAX_UNIFORM_LIGHTS)?));
-    }
-    Ok(resources)
-}
-
-/// What the tables of a scene take, each with what the device holds of its kind.
-type Sizes = Vec<(&'static str, usize, u64)>;
-
-fn list_sizes(gpu: &Gpu, [cells, entries]: &[Contents; 2]) -> Sizes {
-    vec![("cells with lists", cells.len(), max_texels(gpu, 8)), ("lists", entries.len(), max_texels(gpu, 4))]
-}
-
-/// The first that is too large.
-fn too_large(sizes: &Sizes) -> Option<&(&'static str, usize, u64)> {
-    sizes.iter().find(|(_, size, limit)| *size as u64 > *limit)
-}
-
-/// Refuses a scene whose tables are larger than the device's bindings and textures.
-fn check_fits(gpu: &Gpu, packed: &Packed, lists: &[Contents; 2]) -> Result<(), Error> {
-    let buffer = gpu.info.max_storage_binding.min(gpu.info.max_buffer);
-    let texels = max_texels(gpu, 16);
-    let mut sizes = list_sizes(gpu, lists);
-    sizes.extend([
-        ("spheres", packed.materials.len(), texels),
-        ("lights", packed.lights.len(), buffer),
-        ("columns and rows", packed.window.len(), texels),
-        ("faces around the lights", packed.faces.len(), buffer),
-    ]);
-    match too_large(&sizes) {
-        None => Ok(()),
-        Some((what, size, limit)) => Err(Error::NoDevice(format!(
-            "the {what} of this scene take {size} bytes, but {} holds {limit} at the most; `--device cpu` has no such limit",
-            gpu.info
-        ))),
-    }
-}
-
-/// How many pixels say what of themselves: `STATUS_*` of `shaders/quantize.wgsl`.
-#[derive(Debug, Clone, Copy, Default)]
-struct Statuses {
-    not_finite: u64,
-    cut: u64,
-}
-
-impl Statuses {
-    fn add(&mut self, status: u8) {
-        self.not_finite += u64::from(status & 1 != 0);
-        self.cut += u64::from(status & 2 != 0);
-    }
-
-    fn plus(self, other: Self) -> Self {
-        Self { not_finite: self.not_finite + other.not_finite, cut: self.cut + other.cut }
-    }
-
-    /// How many are not finite; an error where the device has left out something.
-    fn checked(self, gpu: &Gpu) -> Result<u64, Error> {
-        match self.cut {
-            0 => Ok(self.not_finite),
-            cut => Err(Error::NoDevice(format!(
-                "{cut} pixels need more turns of a loop than {} has for them; `--device cpu` has no such limit",
-                gpu.info
-            ))),
-        }
-    }
-}
-
-/// Copies pixels in tile order to their places in rows; returns what their statuses say.
-fn place_tiles(pixels: &[u32], tiles: &[[u32; 2]], first: u32, width: u32, rgb: &mut [u8]) -> Statuses {
-    let row_bytes = width as usize * 3;
-    let tile_row_bytes = row_bytes * TILE as usize;
-    let place_row = |(tile_row, band): (usize, &mut [u8])| {
-        let y = first + tile_row as u32 * TILE;
-        let start = tiles.partition_point(|tile| tile[1] < y);
-        let end = tiles.partition_point(|tile| tile[1] <= y);
-        let mut statuses = Statuses::default();
-        for (tile, pixels) in tiles[start..end].iter().zip(pixels[start * TILE_PIXELS..].chunks(TILE_PIXELS)) {
-            let across = TILE.min(width - tile[0]) as usize;
-            for (row, pixels) in band.chunks_mut(row_bytes).zip(pixels.chunks(TILE as usize)) {
-                let row = &mut row[tile[0] as usize * 3..][..across * 3];
-                for (target, pixel) in row.as_chunks_mut::<3>().0.iter_mut().zip(pixels) {
-                    let [r, g, b, status] = pixel.to_le_bytes();
-                    *target = [r, g, b];
-                    statuses.add(status);
-                }
-            }
-        }
-        statuses
-    };
-    rgb.par_chunks_mut(tile_row_bytes).enumerate().map(place_row).reduce(Statuses::default, Statuses::plus)
 }

@@ -2,7 +2,8 @@
 
 use std::time::Instant;
 
-use super::{GpuRenderer, MAX_DISPATCH_TILES, Statuses, TILE_PIXELS, Work};
+use super::place::Statuses;
+use super::{GpuRenderer, MAX_DISPATCH_TILES, TILE_PIXELS, Work};
 use crate::gpu::error::Error;
 use crate::gpu::shader::Slots;
 

@@ -1,0 +1,62 @@
+//! Pixels from the order of tiles to their places in rows, and what they say of themselves.
+
+use rayon::prelude::*;
+
+use super::TILE_PIXELS;
+use crate::gpu::device::Gpu;
+use crate::gpu::error::Error;
+use crate::tiles::TILE;
+
+/// How many pixels say what of themselves: `STATUS_*` of `shaders/quantize.wgsl`.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Statuses {
+    not_finite: u64,
+    cut: u64,
+}
+
+impl Statuses {
+    pub(super) fn add(&mut self, status: u8) {
+        self.not_finite += u64::from(status & 1 != 0);
+        self.cut += u64::from(status & 2 != 0);
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self { not_finite: self.not_finite + other.not_finite, cut: self.cut + other.cut }
+    }
+
+    /// How many are not finite; an error where the device has left out something.
+    pub(super) fn checked(self, gpu: &Gpu) -> Result<u64, Error> {
+        match self.cut {
+            0 => Ok(self.not_finite),
+            cut => Err(Error::NoDevice(format!(
+                "{cut} pixels need more turns of a loop than {} has for them; `--device cpu` has no such limit",
+                gpu.info
+            ))),
+        }
+    }
+}
+
+/// Copies pixels in tile order to their places in rows; returns what their statuses say.
+pub(super) fn place_tiles(pixels: &[u32], tiles: &[[u32; 2]], first: u32, width: u32, rgb: &mut [u8]) -> Statuses {
+    let row_bytes = width as usize * 3;
+    let tile_row_bytes = row_bytes * TILE as usize;
+    let place_row = |(tile_row, band): (usize, &mut [u8])| {
+        let y = first + tile_row as u32 * TILE;
+        let start = tiles.partition_point(|tile| tile[1] < y);
+        let end = tiles.partition_point(|tile| tile[1] <= y);
+        let mut statuses = Statuses::default();
+        for (tile, pixels) in tiles[start..end].iter().zip(pixels[start * TILE_PIXELS..].chunks(TILE_PIXELS)) {
+            let across = TILE.min(width - tile[0]) as usize;
+            for (row, pixels) in band.chunks_mut(row_bytes).zip(pixels.chunks(TILE as usize)) {
+                let row = &mut row[tile[0] as usize * 3..][..across * 3];
+                for (target, pixel) in row.as_chunks_mut::<3>().0.iter_mut().zip(pixels) {
+                    let [r, g, b, status] = pixel.to_le_bytes();
+                    *target = [r, g, b];
+                    statuses.add(status);
+                }
+            }
+        }
+        statuses
+    };
+    rgb.par_chunks_mut(tile_row_bytes).enumerate().map(place_row).reduce(Statuses::default, Statuses::plus)
+}

@@ -1,0 +1,89 @@
+//! The buffers and textures of a scene, and whether a device holds them.
+
+use super::device::Gpu;
+use super::error::Error;
+use super::pack::{Contents, Packed};
+use super::pipeline::{MAX_UNIFORM_LIGHTS, Resource, Specialisation};
+use super::shader::Storage;
+use super::upload::{max_texels, upload, upload_texels};
+
+/// The textures of the lists, by binding.
+pub(super) fn list_resources(gpu: &Gpu, [cells, entries]: &[Contents; 2]) -> Result<Vec<(u32, Resource)>, Error> {
+    Ok(vec![
+        (13, Resource::Texels(upload_texels(gpu, cells, 2)?)),
+        (17, Resource::Texels(upload_texels(gpu, entries, 1)?)),
+    ])
+}
+
+/// The buffers and textures of the scene, by binding, beside those of the lists.
+pub(super) fn scene_resources(
+    gpu: &Gpu,
+    packed: &Packed,
+    specialisation: &Specialisation,
+) -> Result<Vec<(u32, Resource)>, Error> {
+    let (storage, uniform) = (wgpu::BufferUsages::STORAGE, wgpu::BufferUsages::UNIFORM);
+    // A binding of size 0 is not allowed.
+    let filled =
+        |contents: &Contents, usage| upload(gpu, contents, usage, contents.len().max(64)).map(Resource::Buffer);
+    let lit = |contents: &Contents, max: usize| match specialisation.storage {
+        // As many as there are: the kernel asks how many.
+        Storage::ManyLights => filled(contents, storage),
+        // Uniform buffers have a fixed number of elements.
+        _ => upload(gpu, contents, uniform, max * contents.element_size()).map(Resource::Buffer),
+    };
+    let texels = |contents| upload_texels(gpu, contents, 4).map(Resource::Texels);
+    let mut resources = vec![
+        (0, filled(&packed.params, uniform)?),
+        (1, texels(&packed.shapes[0])?),
+        (20, texels(&packed.shapes[1])?),
+        (2, texels(&packed.materials)?),
+        (3, lit(&packed.lights, MAX_UNIFORM_LIGHTS)?),
+        (4, texels(&packed.window)?),
+        (14, lit(&packed.faces, 6 * MAX_UNIFORM_LIGHTS)?),
+    ];
+    if specialisation.refraction.is_some() {
+        resources.push((5, filled(&packed.glasses, storage)?));
+    }
+    if let Some(([first_halves, second_halves], lights)) = &packed.low {
+        resources.extend([(9, texels(first_halves)?), (21, texels(second_halves)?)]);
+        resources.push((10, lit(lights, MAX_UNIFORM_LIGHTS)?));
+    }
+    Ok(resources)
+}
+
+/// What the tables of a scene take, each with what the device holds of its kind.
+type Sizes = Vec<(&'static str, usize, u64)>;
+
+fn list_sizes(gpu: &Gpu, [cells, entries]: &[Contents; 2]) -> Sizes {
+    vec![("cells with lists", cells.len(), max_texels(gpu, 8)), ("lists", entries.len(), max_texels(gpu, 4))]
+}
+
+/// Whether the device has no room for these lists.
+pub(super) fn are_too_large(gpu: &Gpu, lists: &[Contents; 2]) -> bool {
+    too_large(&list_sizes(gpu, lists)).is_some()
+}
+
+/// The first that is too large.
+fn too_large(sizes: &Sizes) -> Option<&(&'static str, usize, u64)> {
+    sizes.iter().find(|(_, size, limit)| *size as u64 > *limit)
+}
+
+/// Refuses a scene whose tables are larger than the device's bindings and textures.
+pub(super) fn check_fits(gpu: &Gpu, packed: &Packed, lists: &[Contents; 2]) -> Result<(), Error> {
+    let buffer = gpu.info.max_storage_binding.min(gpu.info.max_buffer);
+    let texels = max_texels(gpu, 16);
+    let mut sizes = list_sizes(gpu, lists);
+    sizes.extend([
+        ("spheres", packed.materials.len(), texels),
+        ("lights", packed.lights.len(), buffer),
+        ("columns and rows", packed.window.len(), texels),
+        ("faces around the lights", packed.faces.len(), buffer),
+    ]);
+    match too_large(&sizes) {
+        None => Ok(()),
+        Some((what, size, limit)) => Err(Error::NoDevice(format!(
+            "the {what} of this scene take {size} bytes, but {} holds {limit} at the most; `--device cpu` has no such limit",
+            gpu.info
+        ))),
+    }
+}
