@@ -74,7 +74,8 @@ pub(super) fn check_fits(gpu: &Gpu, packed: &Packed, lists: &[Contents; 2]) -> R
     let texels = max_texels(gpu, 16);
     let mut sizes = list_sizes(gpu, lists);
     sizes.extend([
-        ("spheres", packed.materials.len(), texels),
+        // Paths keep the index of a sphere as a number, exact in `f32` up to 2²⁴.
+        ("spheres", packed.materials.len(), texels.min((packed.materials.element_size() as u64) << 24)),
         ("lights", packed.lights.len(), buffer),
         ("columns and rows", packed.window.len(), texels),
         ("faces around the lights", packed.faces.len(), buffer),
