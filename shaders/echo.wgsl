@@ -22,6 +22,7 @@ fn echo_bits(x: u32) {
 
 @compute @workgroup_size(1)
 fn echo_layout() {
+    params = given_params;
     echo3(params.background);
     echo(params.primary_t_min);
     echo3(params.ambient);
@@ -56,8 +57,8 @@ fn echo_layout() {
         echo3(material_of(i).scale);
     }
     for (var i = 0u; i < params.light_count; i++) {
-        echo3(lights[i].position);
-        echo3(lights[i].intensity);
+        echo3(light_of(i).position);
+        echo3(light_of(i).intensity);
     }
     echo3(window_at(2u));
     echo3(window_at(params.window_rows + 2u));

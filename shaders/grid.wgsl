@@ -28,6 +28,7 @@ fn nearest_in_grid(before: Hit, ray: Ray, own: Own, range: Range) -> Hit {
     var list = select(vec2<u32>(), cell_at(u32(cell)), vec2<bool>(is_inside));
     var nearest = before;
     loop {
+        let known = nearest;
         if list.x < list.y {
             let sphere = entry_at(list.x);
             nearest = nearer_of(nearest, ray, body_of(sphere), sphere, own, range);
@@ -41,7 +42,7 @@ fn nearest_in_grid(before: Hit, ray: Ray, own: Own, range: Range) -> Hit {
             let is_y = !is_x & (next.y <= next.z);
             let exit = select(select(next.z, next.y, is_y), next.x, is_x);
             // The hits in later cells are good to far less than this part.
-            let is_done = nearest.found & (nearest_real(nearest.t) * real(1.0009765625) < real(exit));
+            let is_done = known.found & (nearest_real(known.t) * real(1.0009765625) < real(exit));
             // `leave` is of the last walls, by the very same operations.
             if is_done | !(exit < leave) {
                 break;

@@ -3,13 +3,24 @@
 // One side of the cube of directions around a light: as in src/accel/light_buffer.rs.
 struct Face {
     // Least u and v of any sphere.
-    @align(16) low: vec2r,
+    low: vec2r,
     // Cells per unit of u and v.
     per_unit: real,
+    // Number of cells along u and v.
+    @align(16) cells: vec2<u32>,
     // Where in `cells` those of the face begin.
     first: u32,
-    // Number of cells along u and v.
-    cells: vec2<u32>,
+}
+
+// Six of each light.
+@group(0) @binding(14) var faces: Table;
+
+fn face_of(index: u32) -> Face {
+    // A vector, and a texel of words.
+    let at = index * (TEXELS + 1u);
+    let place = vector_from(faces, at);
+    let words = texel_at(faces, at + TEXELS);
+    return Face(place.xy, place.z, words.xy, words.z);
 }
 
 // Radii that a sphere reaches towards a light, rounding included: REACH in src/accel/light_buffer.rs.
@@ -86,7 +97,7 @@ fn light_list(light: u32, direction: vec3r, is_asked: bool) -> vec2<u32> {
     // The greatest component and the two that follow it, cyclically.
     let turned = select(select(direction.zxy, direction.yzx, is_y), direction, is_x);
     let axis = select(select(2u, 1u, is_y), 0u, is_x);
-    let face = faces[light * 6u + axis * 2u + select(0u, 1u, turned.x < real(0.0))];
+    let face = face_of(light * 6u + axis * 2u + select(0u, 1u, turned.x < real(0.0)));
     let place = (turned.yz * (real(1.0) / abs(turned.x)) - face.low) * face.per_unit;
     let cell = vec2<u32>(place);
     if is_asked && place.x >= real(0.0) && place.y >= real(0.0) && cell.x < face.cells.x && cell.y < face.cells.y {
@@ -112,7 +123,7 @@ fn is_behind(body: Body, light: vec3r, distance: real) -> bool {
 fn any_hit(ray: Ray, own: Own, light: u32, is_asked: bool) -> bool {
     let from_light = -direction_of(ray);
     let list = light_list(light, from_light, is_asked);
-    let position = lights[light].position;
+    let position = light_of(light).position;
     let distance = sqrt(dot(from_light, from_light)) + params.light_slack;
     let t_min = params.shadow_t_min;
     var blocked = false;
@@ -121,10 +132,11 @@ fn any_hit(ray: Ray, own: Own, light: u32, is_asked: bool) -> bool {
     if at < list.y {
         loop {
             let body = body_of(entry_at(at));
-            is_last = is_behind(body, position, distance);
-            blocked = !is_last & blocks(ray, body, own, t_min);
             at++;
-            if is_last || blocked || at == list.y {
+            let is_over = is_last | blocked | (at == list.y);
+            is_last = is_behind(body, position, distance);
+            blocked |= blocks(ray, body, own, t_min);
+            if is_over {
                 break;
             }
         }

@@ -1,13 +1,13 @@
 // A sample's way from bounce to bounce; read it beside src/cpu/trace.rs.
 
-// Paths are samples' reflection rays and what they have gathered so far: those of this bounce, and those of the next. In textures,
-// which are the faster to read: see many.wgsl. Each path has VECTORS vectors:
+// Paths are samples' reflection rays and what they have gathered so far: those of this bounce, and those of the next. In textures:
+// see tables.wgsl. Each path has VECTORS vectors:
 //   the start of its ray, and the throughput;
 //   the direction, and the index of the sample's result, which is below 2^24;
 //   the colour gathered, and the shape index, below 2^24, of the sphere that the ray leaves;
 //   with SKIP_SELF the start in the object space of that sphere, and 1 where it is on the inner wall;
 //   for the tiers that carry it, what rounding took from the start.
-@group(0) @binding(11) var paths: texture_2d<u32>;
+@group(0) @binding(11) var paths: Table;
 @group(0) @binding(18) var next_paths: texture_storage_2d<rgba32uint, write>;
 
 // Vectors of a path: as path_vectors in src/gpu/pipeline.rs has it.
@@ -19,7 +19,7 @@ override VECTORS: u32;
 // Keeps a vector of a path of the next bounce.
 fn keep(index: u32, v: vec4r) {
     for (var part = 0u; part < TEXELS; part++) {
-        textureStore(next_paths, texel(index * TEXELS + part), texel_of(v, part));
+        textureStore(next_paths, place_of_texel(index * TEXELS + part), texel_of(v, part));
     }
 }
 
@@ -32,7 +32,11 @@ fn reflect(surface: Surface, color: vec3r, throughput: real, slot: u32) {
     let at = atomicAdd(&stage.next_path_count, 1u) * VECTORS;
     keep(at, vec4r(high_of(ray.origin), throughput));
     keep(at + 1u, vec4r(direction_of(ray), real(slot)));
-    keep(at + 2u, vec4r(color, real(surface.own.shape)));
+    var shape = real(0.0);
+    if SKIP_SELF {
+        shape = real(surface.own.shape);
+    }
+    keep(at + 2u, vec4r(color, shape));
     if SKIP_SELF {
         keep(at + 3u, vec4r(surface.own.local, select(real(0.0), real(1.0), surface.own.inside)));
     }
@@ -70,6 +74,7 @@ fn follow(ray: Ray, hit: Hit, slot: u32) {
 // One bounce of each path.
 @compute @workgroup_size(GROUP)
 fn walk_paths(@builtin(global_invocation_id) id: vec3<u32>) {
+    params = given_params;
     let count = stage.path_count;
     let is_path = id.x < count;
     let at = min(id.x, count - 1u) * VECTORS;

@@ -46,6 +46,7 @@ fn hit_bits(hit: Hit) -> u32 {
 // The nearest hit.
 @compute @workgroup_size(64)
 fn probe_nearest(@builtin(global_invocation_id) id: vec3<u32>) {
+    params = given_params;
     let hit = probe_hit(probe_ray(id.x), probe_words[id.x]);
     probe_flags[id.x] = vec2<u32>(hit_bits(hit), hit.sphere);
     probe_values[id.x] = nearest_real(hit.t);
@@ -54,6 +55,7 @@ fn probe_nearest(@builtin(global_invocation_id) id: vec3<u32>) {
 // Whether something stands between the origin and t = 1.
 @compute @workgroup_size(64)
 fn probe_blocked(@builtin(global_invocation_id) id: vec3<u32>) {
+    params = given_params;
     let blocked = any_hit(probe_ray(id.x), probe_own(probe_words[id.x]), 0u, true);
     probe_flags[id.x] = vec2<u32>(select(0u, PROBE_BLOCKED, blocked), 0u);
     probe_values[id.x] = real(0.0);
@@ -62,6 +64,7 @@ fn probe_blocked(@builtin(global_invocation_id) id: vec3<u32>) {
 // The nearest hit, whether it faces the ray's own light, N.L, and whether something stands between.
 @compute @workgroup_size(64)
 fn probe_lit(@builtin(global_invocation_id) id: vec3<u32>) {
+    params = given_params;
     let ray = probe_ray(id.x);
     let hit = probe_hit(ray, probe_words[id.x]);
     var bits = hit_bits(hit);
@@ -80,6 +83,7 @@ fn probe_lit(@builtin(global_invocation_id) id: vec3<u32>) {
 // The hit after as many reflections as the ray's third word says.
 @compute @workgroup_size(64)
 fn probe_bounce(@builtin(global_invocation_id) id: vec3<u32>) {
+    params = given_params;
     let words = probe_words[id.x];
     var own = probe_own(words);
     var ray = probe_ray(id.x);
@@ -97,6 +101,7 @@ fn probe_bounce(@builtin(global_invocation_id) id: vec3<u32>) {
 // The hit after the path of the refraction ray through as many surfaces as the ray's third word says.
 @compute @workgroup_size(64)
 fn probe_refract(@builtin(global_invocation_id) id: vec3<u32>) {
+    params = given_params;
     let words = probe_words[id.x];
     var own = probe_own(words);
     var ray = probe_ray(id.x);
@@ -114,6 +119,7 @@ fn probe_refract(@builtin(global_invocation_id) id: vec3<u32>) {
 // The specular power of d and n.
 @compute @workgroup_size(64)
 fn probe_power(@builtin(global_invocation_id) id: vec3<u32>) {
+    params = given_params;
     let power = specular_power(probe_reals[6u * id.x], probe_reals[6u * id.x + 1u]);
     probe_flags[id.x] = vec2<u32>(select(0u, PROBE_FINITE, is_finite(power)), 0u);
     probe_values[id.x] = power;

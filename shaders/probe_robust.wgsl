@@ -14,6 +14,7 @@ fn probe_ray(index: u32) -> Ray {
 // The residuals of the error-free sum and product of two numbers.
 @compute @workgroup_size(64)
 fn probe_transforms(@builtin(global_invocation_id) id: vec3<u32>) {
+    params = given_params;
     let a = probe_reals[6u * id.x];
     let b = probe_reals[6u * id.x + 1u];
     probe_flags[id.x] = vec2<u32>(bitcast<u32>(two_sum(a, b).lo), bitcast<u32>(two_product(a, b).lo));

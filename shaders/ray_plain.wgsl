@@ -38,7 +38,7 @@ fn primary_ray(pixel: vec2<u32>) -> Ray {
 
 // From a point to a light, which lies at t = 1.
 fn ray_to_light(origin: Point, light: u32) -> Ray {
-    return ray_from(origin, lights[light].position - origin);
+    return ray_from(origin, light_of(light).position - origin);
 }
 
 fn direction_of(ray: Ray) -> vec3r {

@@ -8,28 +8,6 @@ alias vec4r = vec4<f32>;
 // Greater roots, infinity and NaN are never a hit.
 const FAR: real = 3e38;
 
-// The place of a texel of a texture that stands for a buffer; rows have 2^12: ROW in src/gpu/upload.rs.
-fn texel(index: u32) -> vec2<u32> {
-    return vec2<u32>(index & 4095u, index >> 12u);
-}
-
-// The numbers with this index in a texture, four to a vector.
-fn vector_at(table: texture_2d<u32>, index: u32) -> vec4r {
-    return bitcast<vec4<f32>>(textureLoad(table, texel(index), 0));
-}
-
-// Texels of a vector, and each of them.
-const TEXELS: u32 = 1u;
-
-fn texel_of(v: vec4r, part: u32) -> vec4<u32> {
-    return bitcast<vec4<u32>>(v);
-}
-
-// What stands in place of the fourth number, if that is a u32.
-fn bits_at(table: texture_2d<u32>, index: u32) -> u32 {
-    return textureLoad(table, texel(index), 0).w;
-}
-
 fn is_finite(x: real) -> bool {
     // By the bits: comparisons with NaN may be folded away.
     return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;

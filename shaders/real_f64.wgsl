@@ -8,40 +8,6 @@ alias vec4r = vec4<f64>;
 // Greater roots, infinity and NaN are never a hit.
 const FAR: real = 3e38lf;
 
-// The place of a texel of a texture that stands for a buffer; rows have 2^12: ROW in src/gpu/upload.rs.
-fn texel(index: u32) -> vec2<u32> {
-    return vec2<u32>(index & 4095u, index >> 12u);
-}
-
-fn double_from(low: u32, high: u32) -> f64 {
-    return bitcast<f64>(u64(low) | (u64(high) << 32u));
-}
-
-// The numbers with this index in a texture, four to a vector.
-fn vector_at(table: texture_2d<u32>, index: u32) -> vec4r {
-    let a = textureLoad(table, texel(2u * index), 0);
-    let b = textureLoad(table, texel(2u * index + 1u), 0);
-    return vec4r(double_from(a.x, a.y), double_from(a.z, a.w), double_from(b.x, b.y), double_from(b.z, b.w));
-}
-
-fn two_words(x: f64) -> vec2<u32> {
-    let bits = bitcast<u64>(x);
-    return vec2<u32>(u32(bits), u32(bits >> 32u));
-}
-
-// Texels of a vector, and each of them.
-const TEXELS: u32 = 2u;
-
-fn texel_of(v: vec4r, part: u32) -> vec4<u32> {
-    let half = select(v.xy, v.zw, part == 1u);
-    return vec4<u32>(two_words(half.x), two_words(half.y));
-}
-
-// What stands in place of the fourth number, if that is a u32.
-fn bits_at(table: texture_2d<u32>, index: u32) -> u32 {
-    return textureLoad(table, texel(2u * index + 1u), 0).z;
-}
-
 fn is_finite(x: real) -> bool {
     // An ordered comparison, which NaN fails.
     return abs(x) <= 1e308lf;

@@ -7,6 +7,7 @@
 // are equal.
 @compute @workgroup_size(64)
 fn resolve(@builtin(global_invocation_id) id: vec3<u32>) {
+    params = given_params;
     let first = colors[id.x * SAMPLES * SAMPLES];
     var excess = vec3r();
     for (var sample = 1u; sample < SAMPLES * SAMPLES; sample++) {

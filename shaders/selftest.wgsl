@@ -7,6 +7,7 @@
 
 @compute @workgroup_size(64)
 fn transform_pairs(@builtin(global_invocation_id) id: vec3<u32>) {
+    params = given_params;
     let pair = operands[id.x];
     let sum = two_sum(pair.x, pair.y);
     let product = two_product(pair.x, pair.y);

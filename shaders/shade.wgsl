@@ -51,19 +51,19 @@ fn with_light(color: vec3r, index: u32, surface: Surface, material: Material, is
     let n_dot_l = dot(surface.normal, to_light);
     // Not lit from behind, and not by a light at distance 0, where N.L is NaN.
     var is_lit = is_seen & (n_dot_l > real(0.0));
-    let intensity = lights[index].intensity;
-    if SHADOWS {
-        if COUNT_RAYS {
-            shadow_rays += u32(is_lit);
-        }
-        is_lit &= !any_hit(shadow_ray, surface.own, index, is_lit);
-    }
+    let intensity = light_of(index).intensity;
     var lit = color;
     if DIFFUSE {
         lit += intensity * material.color * (material.kd * n_dot_l);
     }
     if SPECULAR {
         lit += intensity * specular_term(surface, material, to_light, n_dot_l);
+    }
+    if SHADOWS {
+        if COUNT_RAYS {
+            shadow_rays += u32(is_lit);
+        }
+        is_lit &= !any_hit(shadow_ray, surface.own, index, is_lit);
     }
     return select(color, lit, is_lit);
 }

@@ -6,5 +6,6 @@
 // One lane casts the primary rays of one pixel and shades what they hit.
 @compute @workgroup_size(64)
 fn see_samples(@builtin(global_invocation_id) id: vec3<u32>) {
+    params = given_params;
     see_pixel(pixel_list[id.x], id.x * SAMPLES * SAMPLES);
 }

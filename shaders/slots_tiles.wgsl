@@ -7,6 +7,7 @@
 // One workgroup casts the primary rays of one tile, row by row, and shades what they hit.
 @compute @workgroup_size(64)
 fn see_tiles(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) index: u32) {
+    params = given_params;
     let tile = tiles[group.x / 4u][group.x % 4u];
     let pixel = vec2(tile & 0xffffu, tile >> 16u) * 8u + vec2(index % 8u, index / 8u);
     see_pixel(pixel, (group.x * 64u + index) * SAMPLES * SAMPLES);

@@ -61,5 +61,8 @@ struct Light {
     intensity: vec3r,
 }
 
-// Spheres, lights, lists and the window are bound in many.wgsl and lights_*.wgsl, or in ranges.wgsl.
-@group(0) @binding(0) var<uniform> params: Params;
+// Spheres, lights, lists and the window are bound in many.wgsl, or in ranges.wgsl.
+@group(0) @binding(0) var<uniform> given_params: Params;
+
+// Set by each entry point: software devices load what is uniform once for all lanes, but lane by lane in a loop.
+var<private> params: Params;

@@ -8,9 +8,9 @@ use serde::Serialize;
 
 use super::error::Error;
 use super::kernel_cache::KernelCache;
-use super::pipeline::{Specialisation, Stages, compile};
+use super::pipeline::{MAX_TEXTURES, Specialisation, Stages, compile};
 use super::selftest::SelfTest;
-use super::shader::{Kernel, Module};
+use super::shader::{Kernel, Module, Textures};
 use super::tuned::DeviceTuning;
 use crate::precision::Tier;
 use crate::tuning::Tuning;
@@ -68,6 +68,8 @@ pub struct DeviceInfo {
     pub max_workgroups: u32,
     /// Greatest number of invocations of a workgroup.
     pub max_invocations: u32,
+    /// Greatest number of storage textures that a kernel reads and writes.
+    pub max_storage_textures: u32,
 }
 
 impl DeviceInfo {
@@ -91,6 +93,7 @@ impl DeviceInfo {
             max_buffer: limits.max_buffer_size,
             max_workgroups: limits.max_compute_workgroups_per_dimension,
             max_invocations: limits.max_compute_invocations_per_workgroup,
+            max_storage_textures: limits.max_storage_textures_per_shader_stage,
         }
     }
 
@@ -220,6 +223,15 @@ impl Gpu {
     /// Why compiled kernels of earlier runs are not used, where they could be.
     pub fn kernel_cache_note(&self) -> Option<&str> {
         self.kernel_cache.as_ref()?.note()
+    }
+
+    /// How kernels read the textures that hold a scene.
+    pub(super) fn textures(&self) -> Textures {
+        if self.tuned.tuning.stored_tables && self.info.max_storage_textures >= MAX_TEXTURES {
+            Textures::Stored
+        } else {
+            Textures::Sampled
+        }
     }
 
     /// Renders with `tuning` from now on, which has to be one that [`DeviceInfo::problem_with`] has no objection to.

@@ -28,13 +28,13 @@ pub fn echo_layout(
     let [head, sphere, light, tail] = COUNTS;
     let job = Job {
         what: "echoing the layout",
-        module: &Module::echo(kernel),
+        module: &Module::echo(kernel, gpu.textures()),
         inputs: &[
             (0, Space::Uniform, &packed.params.bytes()),
             (1, Space::Texels, &packed.shapes[0].bytes()),
             (20, Space::Texels, &packed.shapes[1].bytes()),
             (2, Space::Texels, &packed.materials.bytes()),
-            (3, Space::Storage, &packed.lights.bytes()),
+            (3, Space::Texels, &packed.lights.bytes()),
             (4, Space::Texels, &packed.window.bytes()),
         ],
         output: 21,

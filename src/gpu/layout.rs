@@ -92,7 +92,7 @@ pub trait Layout {
 
 /// Declares the structs for one scalar, with the numbers of `u32` that pad each.
 macro_rules! layout {
-    ($(#[$doc:meta])* $module:ident, $real:ty, params $params0:literal $params1:literal, shape $shape:literal, material $material:literal, light $light:literal, face $face0:literal $face1:literal) => {
+    ($(#[$doc:meta])* $module:ident, $real:ty, params $params0:literal $params1:literal, shape $shape:literal, material $material:literal, light $light:literal, face $face:literal) => {
         $(#[$doc])*
         pub mod $module {
             use bytemuck::{Pod, Zeroable};
@@ -204,14 +204,14 @@ macro_rules! layout {
                     low: [$real; 2],
                     /// Cells per unit of u and v.
                     per_unit: $real,
-                    /// Where in the cells its own begin.
-                    first: u32,
-                    /// To the alignment that WGSL gives the next vector.
-                    padding0: [u32; $face0],
+                    /// To the end of the vector.
+                    padding0: [u32; $face],
                     /// Number of cells along u and v.
                     cells: [u32; 2],
+                    /// Where in the cells its own begin.
+                    first: u32,
                     /// To the size that WGSL gives the struct.
-                    padding1: [u32; $face1],
+                    padding1: [u32; 1],
                 }
             }
 
@@ -329,11 +329,11 @@ macro_rules! layout {
 
 layout!(
     /// The structs of the `f32` kernels.
-    single, f32, params 0 0, shape 0, material 1, light 1, face 0 2
+    single, f32, params 0 0, shape 0, material 1, light 1, face 1
 );
 layout!(
     /// The structs of the `f64` kernels.
-    double, f64, params 1 0, shape 1, material 2, light 2, face 1 2
+    double, f64, params 1 0, shape 1, material 2, light 2, face 2
 );
 
 const _: () = {

@@ -28,5 +28,5 @@ pub use probe::{Answer, Batch, ProbeRay, Prober, Question, RawBatch, Surface};
 pub use reconstruct::Reconstructor;
 pub use render::{DeviceTimes, GpuRenderer};
 pub use selftest::SelfTest;
-pub use shader::{Kernel, Module, Places, Slots, Storage};
+pub use shader::{Kernel, Module, Places, Slots, Storage, Textures};
 pub use tuned::DeviceTuning;

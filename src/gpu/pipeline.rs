@@ -5,16 +5,15 @@ use std::num::NonZeroU32;
 use super::device::Gpu;
 use super::error::Error;
 use super::kernel_cache::KernelCache;
-use super::shader::{Kernel, Module, Places, Slots, Storage};
+use super::shader::{Kernel, Module, Places, Slots, Storage, Textures};
+use super::upload::texel_format;
 use crate::accel::Acceleration;
 use crate::effects::{Effect, EffectSet, Effects};
 use crate::scene::Scene;
 use crate::settings::{Secondary, Settings, Specular};
-use crate::tuning::Tuning;
 
-/// Up to this many lights and their faces lie in uniform buffers: the array lengths in `shaders/lights_uniform.wgsl`, a sixth
-/// of that in `shaders/faces_uniform.wgsl`.
-pub(super) const MAX_UNIFORM_LIGHTS: usize = 32;
+/// Textures that a kernel reads and writes at the most, whatever it is specialised for.
+pub(super) const MAX_TEXTURES: u32 = 13;
 
 /// What a pipeline is specialised for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -31,6 +30,8 @@ pub struct Specialisation {
     pub blinn: bool,
     /// How spheres and lights reach it.
     pub storage: Storage,
+    /// Number of lights.
+    pub lights: u32,
     /// Where the spheres are that secondary rays look for.
     pub places: Places,
     /// Side of the grid of samples in a pixel.
@@ -45,21 +46,20 @@ pub struct Specialisation {
 
 impl Specialisation {
     /// For `scene` with `effects` under `settings`.
-    pub fn new(scene: &Scene, settings: &Settings, effects: &Effects, kernel: Kernel, tuning: &Tuning) -> Self {
-        let lights = scene.lights.len();
-        let storage = if lights <= MAX_UNIFORM_LIGHTS { Storage::Lights(lights as u32) } else { Storage::ManyLights };
+    pub fn new(scene: &Scene, settings: &Settings, effects: &Effects, kernel: Kernel, gpu: &Gpu) -> Self {
         Self {
             kernel,
             effects: effects.set,
             refraction: NonZeroU32::new(effects.waiting(scene)),
             skip_self: settings.secondary == Secondary::SkipSelf,
             blinn: settings.specular == Specular::Blinn,
-            storage,
+            storage: Storage::Tables(gpu.textures()),
+            lights: scene.lights.len() as u32,
             places: Places::Both,
             samples: settings.samples,
             slots: Slots::Tiles,
             count_rays: false,
-            workgroup: tuning.workgroup,
+            workgroup: gpu.tuned.tuning.workgroup,
         }
     }
 
@@ -101,8 +101,8 @@ impl Specialisation {
         } else if self.storage != Storage::Ranges {
             constants.push(("VECTORS", self.path_vectors() as f64));
         }
-        if let Storage::Lights(count) = self.storage {
-            constants.push(("LIGHT_COUNT", f64::from(count)));
+        if self.storage != Storage::Ranges {
+            constants.push(("LIGHT_COUNT", f64::from(self.lights)));
         }
         constants
     }
@@ -136,11 +136,13 @@ enum Access {
     Uniform,
     Read,
     ReadWrite,
+    /// A table with so many `u32` a texel.
+    Table(Textures, u32),
+    /// A texture of four `u32` a texel that is written.
     Texels,
-    WriteTexels,
 }
 
-use Access::{Read, ReadWrite, Texels, Uniform, WriteTexels};
+use Access::{Read, ReadWrite, Texels, Uniform};
 
 /// What a binding is bound to.
 #[derive(Debug, Clone)]
@@ -192,24 +194,26 @@ pub(super) struct Stages {
 pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stages, Error> {
     let constants = specialisation.constants();
     let module = gpu.shader_module(&specialisation.module())?;
-    let lights = if specialisation.storage == Storage::ManyLights { Read } else { Uniform };
+    let Storage::Tables(textures) = specialisation.storage else {
+        return Err(Error::Lost("only scenes in tables are rendered".into()));
+    };
+    let [words, pairs, vectors] = [1, 2, 4].map(|components| Access::Table(textures, components));
     // What every stage reads and writes.
-    let mut common =
-        vec![(0, Uniform), (1, Texels), (2, Texels), (20, Texels), (3, lights), (7, ReadWrite), (8, ReadWrite)];
-    common.extend([(13, Texels), (14, lights), (17, Texels)]);
+    let mut common = vec![(0, Uniform), (7, ReadWrite), (8, ReadWrite), (13, pairs), (17, words)];
+    common.extend([1, 2, 3, 14, 20].map(|binding| (binding, vectors)));
     if specialisation.kernel.carries_low() {
-        common.extend([(9, Texels), (10, lights), (21, Texels)]);
+        common.extend([9, 10, 21].map(|binding| (binding, vectors)));
     }
     // Glass, or paths to go on with.
     match specialisation.refraction {
         Some(_) => common.push((5, Read)),
-        None => common.extend([(12, ReadWrite), (18, WriteTexels), (19, Uniform)]),
+        None => common.extend([(12, ReadWrite), (18, Texels), (19, Uniform)]),
     }
     let (see_entry, places) = match specialisation.slots {
         Slots::Tiles => (SEE_TILES, Uniform),
         Slots::List => (SEE_SAMPLES, Read),
     };
-    let primary = [(4, Texels), (6, places)];
+    let primary = [(4, vectors), (6, places)];
     let kernel =
         |entry_point, own: &[(u32, Access)]| stage(gpu, &module, entry_point, &constants, &[&common[..], own].concat());
     let between = || {
@@ -227,7 +231,7 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
     std::thread::scope(|scope| {
         let see = scope.spawn(|| kernel(see_entry, &primary));
         let bounce = specialisation.has_paths().then(|| {
-            let walk = kernel(WALK_PATHS, &[(11, Texels)])?;
+            let walk = kernel(WALK_PATHS, &[(11, vectors)])?;
             Ok::<_, Error>([between()?, walk])
         });
         let resolve = (specialisation.samples > 1).then(resolve);
@@ -248,6 +252,11 @@ fn stage(
     bindings: &[(u32, Access)],
 ) -> Result<Stage, Error> {
     let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+    let storage_texture = |access, components| wgpu::BindingType::StorageTexture {
+        access,
+        format: texel_format(components),
+        view_dimension: wgpu::TextureViewDimension::D2,
+    };
     let entry = |&(binding, access): &(u32, Access)| wgpu::BindGroupLayoutEntry {
         binding,
         visibility: wgpu::ShaderStages::COMPUTE,
@@ -255,16 +264,15 @@ fn stage(
             Uniform => buffer(wgpu::BufferBindingType::Uniform),
             Read => buffer(wgpu::BufferBindingType::Storage { read_only: true }),
             ReadWrite => buffer(wgpu::BufferBindingType::Storage { read_only: false }),
-            Texels => wgpu::BindingType::Texture {
+            Access::Table(Textures::Sampled, _) => wgpu::BindingType::Texture {
                 sample_type: wgpu::TextureSampleType::Uint,
                 view_dimension: wgpu::TextureViewDimension::D2,
                 multisampled: false,
             },
-            WriteTexels => wgpu::BindingType::StorageTexture {
-                access: wgpu::StorageTextureAccess::WriteOnly,
-                format: wgpu::TextureFormat::Rgba32Uint,
-                view_dimension: wgpu::TextureViewDimension::D2,
-            },
+            Access::Table(Textures::Stored, components) => {
+                storage_texture(wgpu::StorageTextureAccess::ReadOnly, components)
+            }
+            Texels => storage_texture(wgpu::StorageTextureAccess::WriteOnly, 4),
         },
         count: None,
     };

@@ -262,6 +262,7 @@ impl<'a> Prober<'a> {
             refraction: None,
             blinn: false,
             storage: Storage::Ranges,
+            lights: 0,
             places: Places::Large,
             count_rays: false,
             workgroup: 64,

@@ -128,7 +128,7 @@ impl<'a> GpuRenderer<'a> {
         let (scene, settings) = in_range(scene, settings);
         let (scene, settings) = (scene.as_ref(), &settings);
         let tuning = &gpu.tuned.tuning;
-        let specialisation = Specialisation::new(scene, settings, effects, kernel, tuning);
+        let specialisation = Specialisation::new(scene, settings, effects, kernel, gpu);
         let camera = Camera::new(scene, settings);
         let lists = |density| Acceleration::with_density(scene, &camera, specialisation.effects, rounding, density);
         let mut accel = lists(&tuning.density);

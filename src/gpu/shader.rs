@@ -80,13 +80,20 @@ pub enum Places {
     Both,
 }
 
+/// How kernels read the textures that hold a scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Textures {
+    /// As storage textures.
+    Stored,
+    /// As sampled textures.
+    Sampled,
+}
+
 /// How spheres and lights reach the kernel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Storage {
-    /// Spheres in textures, with lists of those that a ray can meet; so many lights in uniform buffers.
-    Lights(u32),
-    /// Spheres likewise, lights of any number in storage buffers.
-    ManyLights,
+    /// In textures, with lists of those that a ray can meet.
+    Tables(Textures),
     /// In storage buffers, a range of spheres for each ray of a batch.
     Ranges,
 }
@@ -103,12 +110,20 @@ pub enum Slots {
 /// The scalar of the kernel and what the host packs.
 fn data_parts(kernel: Kernel, storage: Storage) -> Vec<Part> {
     let barrier = if kernel == Kernel::NoBarrier { part!("barrier_none.wgsl") } else { part!("barrier.wgsl") };
-    let mut parts = vec![
-        if kernel.is_double() { part!("real_f64.wgsl") } else { part!("real_f32.wgsl") },
-        part!("types.wgsl"),
-        if storage == Storage::Ranges { part!("ranges.wgsl") } else { part!("many.wgsl") },
-        if matches!(storage, Storage::Lights(_)) { part!("lights_uniform.wgsl") } else { part!("lights_storage.wgsl") },
-    ];
+    let mut parts =
+        vec![if kernel.is_double() { part!("real_f64.wgsl") } else { part!("real_f32.wgsl") }, part!("types.wgsl")];
+    match storage {
+        Storage::Tables(textures) => parts.extend([
+            match textures {
+                Textures::Stored => part!("tables_stored.wgsl"),
+                Textures::Sampled => part!("tables_sampled.wgsl"),
+            },
+            if kernel.is_double() { part!("vectors_f64.wgsl") } else { part!("vectors_f32.wgsl") },
+            part!("tables.wgsl"),
+            part!("many.wgsl"),
+        ]),
+        Storage::Ranges => parts.push(part!("ranges.wgsl")),
+    }
     if !kernel.is_double() {
         parts.push(barrier);
     }
@@ -130,10 +145,9 @@ fn intersection_parts(kernel: Kernel, storage: Storage) -> Vec<Part> {
         Kernel::Schoolbook => vec![real, plain_ray, part!("kernel_schoolbook.wgsl")],
     });
     parts.push(part!("intersect.wgsl"));
-    parts.extend(match storage {
-        Storage::Ranges => vec![part!("every.wgsl")],
-        Storage::Lights(_) => vec![part!("lists.wgsl"), part!("faces_uniform.wgsl")],
-        Storage::ManyLights => vec![part!("lists.wgsl"), part!("faces_storage.wgsl")],
+    parts.push(match storage {
+        Storage::Tables(_) => part!("lists.wgsl"),
+        Storage::Ranges => part!("every.wgsl"),
     });
     parts
 }
@@ -207,7 +221,7 @@ impl Module {
     /// The module that makes pixels of samples.
     pub fn resolve(kernel: Kernel) -> Self {
         let mut parts = vec![part!("effects.wgsl")];
-        parts.extend(data_parts(kernel, Storage::Lights(0)));
+        parts.extend(data_parts(kernel, Storage::Ranges));
         parts.extend([part!("quantize.wgsl"), part!("resolve.wgsl")]);
         Self::join(parts)
     }
@@ -238,8 +252,8 @@ impl Module {
     }
 
     /// The module that writes back what it reads.
-    pub fn echo(kernel: Kernel) -> Self {
-        let mut parts = data_parts(kernel, Storage::ManyLights);
+    pub fn echo(kernel: Kernel, textures: Textures) -> Self {
+        let mut parts = data_parts(kernel, Storage::Tables(textures));
         parts.push(part!("echo.wgsl"));
         Self::join(parts)
     }

@@ -3,8 +3,7 @@
 use super::device::Gpu;
 use super::error::Error;
 use super::pack::{Contents, Packed};
-use super::pipeline::{MAX_UNIFORM_LIGHTS, Resource, Specialisation};
-use super::shader::Storage;
+use super::pipeline::{Resource, Specialisation};
 use super::upload::{max_texels, upload, upload_texels};
 
 /// The textures of the lists, by binding.
@@ -25,28 +24,21 @@ pub(super) fn scene_resources(
     // A binding of size 0 is not allowed.
     let filled =
         |contents: &Contents, usage| upload(gpu, contents, usage, contents.len().max(64)).map(Resource::Buffer);
-    let lit = |contents: &Contents, max: usize| match specialisation.storage {
-        // As many as there are: the kernel asks how many.
-        Storage::ManyLights => filled(contents, storage),
-        // Uniform buffers have a fixed number of elements.
-        _ => upload(gpu, contents, uniform, max * contents.element_size()).map(Resource::Buffer),
-    };
     let texels = |contents| upload_texels(gpu, contents, 4).map(Resource::Texels);
     let mut resources = vec![
         (0, filled(&packed.params, uniform)?),
         (1, texels(&packed.shapes[0])?),
         (20, texels(&packed.shapes[1])?),
         (2, texels(&packed.materials)?),
-        (3, lit(&packed.lights, MAX_UNIFORM_LIGHTS)?),
+        (3, texels(&packed.lights)?),
         (4, texels(&packed.window)?),
-        (14, lit(&packed.faces, 6 * MAX_UNIFORM_LIGHTS)?),
+        (14, texels(&packed.faces)?),
     ];
     if specialisation.refraction.is_some() {
         resources.push((5, filled(&packed.glasses, storage)?));
     }
     if let Some(([first_halves, second_halves], lights)) = &packed.low {
-        resources.extend([(9, texels(first_halves)?), (21, texels(second_halves)?)]);
-        resources.push((10, lit(lights, MAX_UNIFORM_LIGHTS)?));
+        resources.extend([(9, texels(first_halves)?), (21, texels(second_halves)?), (10, texels(lights)?)]);
     }
     Ok(resources)
 }
@@ -76,9 +68,10 @@ pub(super) fn check_fits(gpu: &Gpu, packed: &Packed, lists: &[Contents; 2]) -> R
     sizes.extend([
         // Paths keep the index of a sphere as a number, exact in `f32` up to 2²⁴.
         ("spheres", packed.materials.len(), texels.min((packed.materials.element_size() as u64) << 24)),
-        ("lights", packed.lights.len(), buffer),
+        ("lights", packed.lights.len(), texels),
+        ("glass", packed.glasses.len(), buffer),
         ("columns and rows", packed.window.len(), texels),
-        ("faces around the lights", packed.faces.len(), buffer),
+        ("faces around the lights", packed.faces.len(), texels),
     ]);
     match too_large(&sizes) {
         None => Ok(()),

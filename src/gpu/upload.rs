@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::device::Gpu;
 use super::error::Error;
 use super::pack::Contents;
+use super::shader::Textures;
 
 /// Bytes that a task packs at a time: whole elements of every size.
 const PIECE: usize = 192 << 9;
@@ -47,7 +48,7 @@ pub(super) fn upload(
     })
 }
 
-/// Texels in a row of a texture that stands for a buffer: as `texel` of `shaders/many_textures.wgsl` has it.
+/// Texels in a row of a texture that stands for a buffer: as `place_of_texel` of `shaders/tables.wgsl` has it.
 pub(super) const ROW: u32 = 4096;
 
 /// Greatest size of `contents` as such a texture, in bytes.
@@ -55,11 +56,28 @@ pub(super) fn max_texels(gpu: &Gpu, texel_size: u64) -> u64 {
     u64::from(ROW) * texel_size * u64::from(gpu.device.limits().max_texture_dimension_2d)
 }
 
+/// Texels of one, two or four `u32`.
+pub(super) fn texel_format(components: u32) -> wgpu::TextureFormat {
+    match components {
+        1 => wgpu::TextureFormat::R32Uint,
+        2 => wgpu::TextureFormat::Rg32Uint,
+        _ => wgpu::TextureFormat::Rgba32Uint,
+    }
+}
+
 /// A texture for so many bytes that kernels keep and read, in texels of four `u32`.
 pub(super) fn empty_texels(gpu: &Gpu, bytes: u64) -> wgpu::TextureView {
-    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING;
+    let usage = table_usage(gpu) | wgpu::TextureUsages::STORAGE_BINDING;
     let rows = bytes.div_ceil(u64::from(ROW) * 16) as u32;
     texture(gpu, rows, wgpu::TextureFormat::Rgba32Uint, usage).create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+/// How kernels read it.
+fn table_usage(gpu: &Gpu) -> wgpu::TextureUsages {
+    match gpu.textures() {
+        Textures::Stored => wgpu::TextureUsages::STORAGE_BINDING,
+        Textures::Sampled => wgpu::TextureUsages::TEXTURE_BINDING,
+    }
 }
 
 fn texture(gpu: &Gpu, rows: u32, format: wgpu::TextureFormat, usage: wgpu::TextureUsages) -> wgpu::Texture {
@@ -82,16 +100,12 @@ pub(super) fn upload_texels(gpu: &Gpu, contents: &Contents, components: u32) -> 
 
 /// Likewise; errors are the caller's.
 pub(super) fn texels(gpu: &Gpu, contents: &Contents, components: u32) -> wgpu::TextureView {
-    let format = match components {
-        1 => wgpu::TextureFormat::R32Uint,
-        2 => wgpu::TextureFormat::Rg32Uint,
-        _ => wgpu::TextureFormat::Rgba32Uint,
-    };
+    let format = texel_format(components);
     let row = (ROW * components * 4) as usize;
     // Whole rows of whole elements of every size.
     let band = BAND.next_multiple_of(3 * row);
     let extent = |rows: usize| wgpu::Extent3d { width: ROW, height: rows as u32, depth_or_array_layers: 1 };
-    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+    let usage = table_usage(gpu) | wgpu::TextureUsages::COPY_DST;
     let texture = texture(gpu, contents.len().div_ceil(row).max(1) as u32, format, usage);
     for start in (0..contents.len()).step_by(band) {
         let len = band.min(contents.len() - start);

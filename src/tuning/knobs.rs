@@ -18,13 +18,20 @@ pub struct Knob {
 }
 
 /// All numbers of a tuning.
-pub static KNOBS: [Knob; 7] = [
+pub static KNOBS: [Knob; 8] = [
     Knob {
         name: "workgroup",
         limits: [1.0, 256.0],
         candidates: &[8.0, 16.0, 32.0, 64.0, 128.0, 256.0],
         get: |tuning| f64::from(tuning.workgroup),
         set: |tuning, value| tuning.workgroup = value as u32,
+    },
+    Knob {
+        name: "stored_tables",
+        limits: [0.0, 1.0],
+        candidates: &[0.0, 1.0],
+        get: |tuning| f64::from(u8::from(tuning.stored_tables)),
+        set: |tuning, value| tuning.stored_tables = value >= 0.5,
     },
     Knob {
         name: "light_entries",

@@ -16,6 +16,8 @@ pub use knobs::{KNOBS, Knob};
 pub struct Tuning {
     /// Invocations of a workgroup of the kernel that is over paths, not over tiles.
     pub workgroup: u32,
+    /// Whether kernels read a scene from storage textures instead of sampled ones, where the device has as many as they need.
+    pub stored_tables: bool,
     /// How fine the lists of spheres are.
     pub density: Density,
     /// How long a dispatch should take, in ms: long enough to hide its overhead, far below what loses a device.
@@ -67,6 +69,8 @@ impl Tuning {
     pub const fn of(class: Class) -> Self {
         let software = Self {
             workgroup: 64,
+            // lavapipe takes three quarters of the time of sampled ones.
+            stored_tables: true,
             density: Density::DEFAULT,
             // No watchdog guards them, and their threads wait for each other at the end of each.
             dispatch_ms: 100.0,

@@ -7,7 +7,8 @@ use trueray::camera::Camera;
 use trueray::effects::{Effect, EffectSet, Effects, Request};
 use trueray::gpu::layout::{double, single};
 use trueray::gpu::{
-    Kernel, Module, Places, SEE_SAMPLES, SEE_TILES, SelfTest, Slots, Specialisation, Storage, WALK_PATHS, echo_layout,
+    Kernel, Module, Places, SEE_SAMPLES, SEE_TILES, SelfTest, Slots, Specialisation, Storage, Textures, WALK_PATHS,
+    echo_layout,
 };
 
 use trueray::precision::Tier;
@@ -20,7 +21,10 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 fn kinds() -> impl Iterator<Item = (Kernel, Storage, Places)> {
     let kernels = Tier::ALL.map(Kernel::Tier).into_iter().chain([Kernel::Pairs]);
     let places = [Places::Grid, Places::Large, Places::Both];
-    kernels.flat_map(move |kernel| places.map(|places| (kernel, Storage::Lights(2), places)))
+    // Each way to read tables, with some of the kernels.
+    let textures = [Textures::Stored, Textures::Sampled].into_iter().cycle();
+    let kinds = kernels.flat_map(move |kernel| places.map(|places| (kernel, places)));
+    kinds.zip(textures).map(|((kernel, places), textures)| (kernel, Storage::Tables(textures), places))
 }
 
 fn validate(module: &naga::Module) -> naga::valid::ModuleInfo {
@@ -46,6 +50,7 @@ fn every_effect_set_is_valid() {
                     skip_self,
                     blinn,
                     storage,
+                    lights: 2,
                     places,
                     samples: 1,
                     slots: Slots::Tiles,
@@ -75,6 +80,7 @@ fn every_constant_is_an_override_and_every_override_is_set() {
             skip_self: true,
             blinn: true,
             storage,
+            lights: 2,
             places,
             samples: 2,
             slots: Slots::Tiles,
@@ -134,9 +140,10 @@ fn structs_lie_in_memory_as_the_shader_reads_them() {
 }
 
 fn assert_layout(tier: Tier, structs: [(&str, Fields, usize); 6]) {
-    let module = Module::render(Kernel::Tier(tier), Storage::Lights(3), Places::Both, false, NonZeroU32::new(3))
-        .parse()
-        .unwrap();
+    let module =
+        Module::render(Kernel::Tier(tier), Storage::Tables(Textures::Stored), Places::Both, false, NonZeroU32::new(3))
+            .parse()
+            .unwrap();
     for (name, fields, size) in structs {
         let (_, found) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).unwrap();
         let naga::TypeInner::Struct { members, span } = &found.inner else { panic!("{name}") };
@@ -170,8 +177,6 @@ fn the_small_modules_are_valid_and_have_their_entry_points() {
     for fill in Fill::ALL {
         assert_eq!(entry_points(Module::fill(fill)), ["fill"]);
     }
-    let many = Module::render(Kernel::Tier(Tier::Fast), Storage::ManyLights, Places::Both, false, None);
-    assert_eq!(entry_points(many), [WALK_PATHS, SEE_TILES]);
 }
 
 #[test]
@@ -189,7 +194,8 @@ fn no_two_bindings_have_the_same_number() {
 
 #[test]
 fn an_error_in_the_shader_names_its_file_and_line() {
-    let mut module = Module::render(Kernel::Tier(Tier::Fast), Storage::Lights(3), Places::Both, false, None);
+    let mut module =
+        Module::render(Kernel::Tier(Tier::Fast), Storage::Tables(Textures::Stored), Places::Both, false, None);
     let line = 1 + module.text.lines().position(|line| line.contains("fn reflection_ray(")).unwrap() as u32;
     let (file, line_in_file) = module.place(line);
     assert_eq!(file, "shaders/reflect.wgsl");
