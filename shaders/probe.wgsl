@@ -119,7 +119,6 @@ fn probe_refract(@builtin(global_invocation_id) id: vec3<u32>) {
 // The specular power of d and n.
 @compute @workgroup_size(64)
 fn probe_power(@builtin(global_invocation_id) id: vec3<u32>) {
-    params = given_params;
     let power = specular_power(probe_reals[6u * id.x], probe_reals[6u * id.x + 1u]);
     probe_flags[id.x] = vec2<u32>(select(0u, PROBE_FINITE, is_finite(power)), 0u);
     probe_values[id.x] = power;
