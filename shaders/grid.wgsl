@@ -1,8 +1,25 @@
-// The nearer of a hit and the intersections with the spheres in the grid: a walk from cell to cell (Amanatides, Woo, "A Fast Voxel
-// Traversal Algorithm for Ray Tracing", 1987). Each turn of its only loop tests a sphere, takes a step, or both, so that lanes with
-// long and with short lists do not wait for each other.
-fn nearest_in_grid(before: Hit, ray: Ray, own: Own, range: Range) -> Hit {
+// A walk through the grid from cell to cell (Amanatides, Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing", 1987), in turns:
+// each tests a sphere, takes a step, or both, so that lanes with long and with short lists do not wait for each other.
+
+struct Walk {
     // In cells.
+    origin: vec3<f32>,
+    // t for each cell's width.
+    inverse: vec3<f32>,
+    // t at which the ray leaves the grid; before 0 where it misses it.
+    leave: f32,
+    // 1 or -1 along each axis, and what that adds to the index of the cell.
+    step: vec3<f32>,
+    strides: vec3<i32>,
+    // Where the ray leaves the cell along each axis.
+    wall: vec3<f32>,
+    cell: i32,
+    // What is left of the list of the cell.
+    list: vec2<u32>,
+    goes_on: bool,
+}
+
+fn begin_walk(ray: Ray) -> Walk {
     let size = vec3<f32>(params.grid_cells);
     let origin = offset_from(ray.origin, params.grid_low) * params.grid_per_unit;
     let direction = vec3<f32>(direction_of(ray)) * params.grid_per_unit;
@@ -15,42 +32,64 @@ fn nearest_in_grid(before: Hit, ray: Ray, own: Own, range: Range) -> Hit {
     let enter = max(max(enters.x, enters.y), max(enters.z, 0.0));
     let last = min(leaves.x, min(leaves.y, leaves.z));
     let is_inside = enter <= last;
-    // A ray that misses the grid has left it.
-    let leave = select(-1.0, last, is_inside);
     let place = clamp(floor(origin + direction * enter), vec3<f32>(), size - 1.0);
     let is_ahead = inverse >= vec3<f32>();
     let step = select(vec3<f32>(-1.0), vec3<f32>(1.0), is_ahead);
     let strides = vec3<i32>(vec3<u32>(1u, params.grid_cells.x, params.grid_cells.x * params.grid_cells.y));
-    let strides_ahead = select(-strides, strides, is_ahead);
-    // Where the ray leaves the cell along each axis.
-    var wall = place + max(step, vec3<f32>());
-    var cell = i32(params.grid_first) + dot(vec3<i32>(place), strides);
-    var list = select(vec2<u32>(), cell_at(u32(cell)), vec2<bool>(is_inside));
+    let cell = i32(params.grid_first) + dot(vec3<i32>(place), strides);
+    return Walk(
+        origin,
+        inverse,
+        // A ray that misses the grid has left it.
+        select(-1.0, last, is_inside),
+        step,
+        select(-strides, strides, is_ahead),
+        place + max(step, vec3<f32>()),
+        cell,
+        select(vec2<u32>(), cell_at(u32(cell)), vec2<bool>(is_inside)),
+        true,
+    );
+}
+
+// One turn: the nearer of a hit and the intersection with a sphere, if there is one left in the cell.
+fn take_turn(walk: ptr<function, Walk>, nearest: ptr<function, Hit>, ray: Ray, own: Own, range: Range) {
+    // What this turn finds counts from the next one on, which costs a step and lets the two overlap.
+    let known = *nearest;
+    if (*walk).list.x < (*walk).list.y {
+        let sphere = entry_at((*walk).list.x);
+        *nearest = nearer_of(known, ray, body_of(sphere), sphere, own, range);
+        (*walk).list.x++;
+    }
+    if (*walk).list.x >= (*walk).list.y {
+        // From the place of the wall, since a sum would drift.
+        let next = ((*walk).wall - (*walk).origin) * (*walk).inverse;
+        // Whatever the comparisons say, of NaN even, one axis is taken, so that the walk ends.
+        let is_x = (next.x <= next.y) & (next.x <= next.z);
+        let is_y = !is_x & (next.y <= next.z);
+        let exit = select(select(next.z, next.y, is_y), next.x, is_x);
+        // The hits in later cells are good to far less than this part.
+        let is_done = known.found & (nearest_real(known.t) * real(1.0009765625) < real(exit));
+        // `leave` is of the last walls, by the very same operations.
+        (*walk).goes_on = !is_done & (exit < (*walk).leave);
+        (*walk).wall += select(vec3<f32>(), (*walk).step, vec3<bool>(is_x, is_y, !is_x & !is_y));
+        let strides = (*walk).strides;
+        (*walk).cell += select(select(strides.z, strides.y, is_y), strides.x, is_x);
+        // Where the walk is over, the cell may be none of the grid.
+        let cell = select(params.grid_first, u32((*walk).cell), (*walk).goes_on);
+        (*walk).list = cell_at(cell);
+    }
+}
+
+// The nearer of a hit and the intersections with the spheres in the grid.
+fn nearest_in_grid(before: Hit, ray: Ray, own: Own, range: Range) -> Hit {
     var nearest = before;
+    var walk = begin_walk(ray);
     loop {
-        let known = nearest;
-        if list.x < list.y {
-            let sphere = entry_at(list.x);
-            nearest = nearer_of(nearest, ray, body_of(sphere), sphere, own, range);
-            list.x++;
-        }
-        if list.x >= list.y {
-            // From the place of the wall, since a sum would drift.
-            let next = (wall - origin) * inverse;
-            // Whatever the comparisons say, of NaN even, one axis is taken, so that the walk ends.
-            let is_x = (next.x <= next.y) & (next.x <= next.z);
-            let is_y = !is_x & (next.y <= next.z);
-            let exit = select(select(next.z, next.y, is_y), next.x, is_x);
-            // The hits in later cells are good to far less than this part.
-            let is_done = known.found & (nearest_real(known.t) * real(1.0009765625) < real(exit));
-            // `leave` is of the last walls, by the very same operations.
-            if is_done | !(exit < leave) {
-                break;
-            }
-            wall += select(vec3<f32>(), step, vec3<bool>(is_x, is_y, !is_x & !is_y));
-            cell += select(select(strides_ahead.z, strides_ahead.y, is_y), strides_ahead.x, is_x);
-            list = cell_at(u32(cell));
+        take_turn(&walk, &nearest, ray, own, range);
+        if !walk.goes_on {
+            break;
         }
     }
+    is_cut |= walk.goes_on;
     return nearest;
 }

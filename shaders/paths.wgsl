@@ -16,6 +16,32 @@ override VECTORS: u32;
 // Whether there is a next bounce: 0 or 1.
 @group(0) @binding(19) var<uniform> has_next: u32;
 
+struct Path {
+    ray: Ray,
+    own: Own,
+    slot: u32,
+    color: vec3r,
+    throughput: real,
+}
+
+// A path of this bounce.
+fn path_of(index: u32) -> Path {
+    let at = index * VECTORS;
+    let start = vector_at(paths, at);
+    let way = vector_at(paths, at + 1u);
+    let gathered = vector_at(paths, at + 2u);
+    var own = Own(NO_SHAPE, false, vec3r());
+    if SKIP_SELF {
+        let local = vector_at(paths, at + 3u);
+        own = Own(u32(gathered.w), local.w != real(0.0), local.xyz);
+    }
+    var low = vec3r();
+    if CARRIES_LOW {
+        low = vector_at(paths, at + VECTORS - 1u).xyz;
+    }
+    return Path(ray_from(point_from(start.xyz, low), way.xyz), own, u32(way.w), gathered.xyz, start.w);
+}
+
 // Keeps a vector of a path of the next bounce.
 fn keep(index: u32, v: vec4r) {
     for (var part = 0u; part < TEXELS; part++) {
@@ -69,29 +95,4 @@ fn shade(ray: Ray, hit: Hit, is_path: bool, slot: u32, before: vec3r, throughput
 fn follow(ray: Ray, hit: Hit, slot: u32) {
     // What hits nothing shows the background; a reflection ray that hits nothing adds black.
     shade(ray, hit, true, slot, select(params.background, vec3r(), hit.found), real(1.0));
-}
-
-// One bounce of each path.
-@compute @workgroup_size(GROUP)
-fn walk_paths(@builtin(global_invocation_id) id: vec3<u32>) {
-    params = given_params;
-    let count = stage.path_count;
-    let is_path = id.x < count;
-    let at = min(id.x, count - 1u) * VECTORS;
-    let start = vector_at(paths, at);
-    let way = vector_at(paths, at + 1u);
-    let gathered = vector_at(paths, at + 2u);
-    var own = Own(NO_SHAPE, false, vec3r());
-    if SKIP_SELF {
-        let local = vector_at(paths, at + 3u);
-        own = Own(u32(gathered.w), local.w != real(0.0), local.xyz);
-    }
-    var low = vec3r();
-    if CARRIES_LOW {
-        low = vector_at(paths, at + VECTORS - 1u).xyz;
-    }
-    let ray = ray_from(point_from(start.xyz, low), way.xyz);
-    var hit = nearest_secondary(ray, own, reflection_range());
-    hit.found &= is_path;
-    shade(ray, hit, is_path, u32(way.w), gathered.xyz, start.w);
 }

@@ -1,5 +1,10 @@
 // The nearest intersection of a ray that leaves a surface, where some spheres are in the grid and some too large for it.
 
+// Among those outside the grid.
+fn nearest_outside(ray: Ray, own: Own, range: Range) -> Hit {
+    return nearest_large(no_hit(), ray, own, range);
+}
+
 fn nearest_secondary(ray: Ray, own: Own, range: Range) -> Hit {
-    return nearest_in_grid(nearest_large(no_hit(), ray, own, range), ray, own, range);
+    return nearest_in_grid(nearest_outside(ray, own, range), ray, own, range);
 }

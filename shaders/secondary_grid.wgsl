@@ -1,5 +1,10 @@
 // The nearest intersection of a ray that leaves a surface, where all spheres are in the grid.
 
+// Among those outside the grid.
+fn nearest_outside(ray: Ray, own: Own, range: Range) -> Hit {
+    return no_hit();
+}
+
 fn nearest_secondary(ray: Ray, own: Own, range: Range) -> Hit {
-    return nearest_in_grid(no_hit(), ray, own, range);
+    return nearest_in_grid(nearest_outside(ray, own, range), ray, own, range);
 }

@@ -5,15 +5,16 @@ use std::num::NonZeroU32;
 use super::device::Gpu;
 use super::error::Error;
 use super::kernel_cache::KernelCache;
-use super::shader::{Kernel, Module, Places, Slots, Storage, Textures};
+use super::shader::{Kernel, Module, Places, Slots, Storage, Textures, Variant, Walk};
 use super::upload::texel_format;
 use crate::accel::Acceleration;
 use crate::effects::{Effect, EffectSet, Effects};
 use crate::scene::Scene;
 use crate::settings::{Secondary, Settings, Specular};
+use crate::tuning::Tuning;
 
 /// Textures that a kernel reads and writes at the most, whatever it is specialised for.
-pub(super) const MAX_TEXTURES: u32 = 13;
+pub(super) const MAX_TEXTURES: u32 = 14;
 
 /// What a pipeline is specialised for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -34,6 +35,8 @@ pub struct Specialisation {
     pub lights: u32,
     /// Where the spheres are that secondary rays look for.
     pub places: Places,
+    /// How paths are walked, where nothing refracts.
+    pub walk: Walk,
     /// Side of the grid of samples in a pixel.
     pub samples: u32,
     /// Which pixels a dispatch renders.
@@ -56,6 +59,7 @@ impl Specialisation {
             storage: Storage::Tables(gpu.textures()),
             lights: scene.lights.len() as u32,
             places: Places::Both,
+            walk: Walk::AtOnce,
             samples: settings.samples,
             slots: Slots::Tiles,
             count_rays: false,
@@ -64,14 +68,20 @@ impl Specialisation {
     }
 
     /// For the lists that rays will look through.
-    pub(super) fn with_lists(self, accel: &Acceleration) -> Self {
+    pub(super) fn with_lists(self, accel: &Acceleration, tuning: &Tuning) -> Self {
         let Some(grid) = &accel.grid else { return Self { places: Places::Large, ..self } };
         let places = match grid.large().len() {
             0 => Places::Grid,
             large if large == grid.lists.entries.len() => Places::Large,
             _ => Places::Both,
         };
-        Self { places, ..self }
+        let walk = match NonZeroU32::new(tuning.paths) {
+            Some(paths) if places != Places::Large && grid.lists.entries.len() as f64 >= tuning.in_turn_from => {
+                Walk::InTurn(paths)
+            }
+            _ => Walk::AtOnce,
+        };
+        Self { places, walk, ..self }
     }
 
     /// Vectors that keep a path: as `shaders/paths.wgsl` has them.
@@ -100,6 +110,9 @@ impl Specialisation {
             constants.push(("SKIP_SELF_ALWAYS", f64::from(self.skip_self)));
         } else if self.storage != Storage::Ranges {
             constants.push(("VECTORS", self.path_vectors() as f64));
+            if let Walk::InTurn(paths) = self.walk {
+                constants.push(("PATHS", f64::from(paths.get())));
+            }
         }
         if self.storage != Storage::Ranges {
             constants.push(("LIGHT_COUNT", f64::from(self.lights)));
@@ -119,7 +132,8 @@ impl Specialisation {
 
     /// The module that renders.
     pub fn module(&self) -> Module {
-        Module::render_slots(self.kernel, self.storage, self.places, self.samples > 1, self.refraction, self.slots)
+        let Self { kernel, storage, places, refraction, slots, walk, .. } = *self;
+        Module::render(&Variant { kernel, storage, places, samples: self.samples > 1, refraction, slots, walk })
     }
 }
 
@@ -130,6 +144,9 @@ pub const SEE_SAMPLES: &str = "see_samples";
 /// The entry point that casts the reflection rays of paths.
 pub const WALK_PATHS: &str = "walk_paths";
 
+/// The entry point that shades what they have met, where several share an invocation.
+pub const SHADE_PATHS: &str = "shade_paths";
+
 /// How a binding is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Access {
@@ -138,8 +155,8 @@ enum Access {
     ReadWrite,
     /// A table with so many `u32` a texel.
     Table(Textures, u32),
-    /// A texture of four `u32` a texel that is written.
-    Texels,
+    /// A texture with so many `u32` a texel that is written.
+    Texels(u32),
 }
 
 use Access::{Read, ReadWrite, Texels, Uniform};
@@ -180,12 +197,22 @@ impl Stage {
     }
 }
 
+/// The kernels of a bounce of the paths.
+#[derive(Debug)]
+pub(super) struct Bounce {
+    /// What goes before.
+    pub(super) begin: Stage,
+    pub(super) walk: Stage,
+    /// Where walking leaves shading to another kernel.
+    pub(super) shade: Option<Stage>,
+}
+
 /// The kernels of a picture.
 #[derive(Debug)]
 pub(super) struct Stages {
     pub(super) see: Stage,
-    /// What goes before a bounce of the paths, and the bounce; where there are reflections.
-    pub(super) bounce: Option<[Stage; 2]>,
+    /// Where there are reflections.
+    pub(super) bounce: Option<Bounce>,
     /// From samples to pixels, where there are several a pixel.
     pub(super) resolve: Option<Stage>,
 }
@@ -207,7 +234,7 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
     // Glass, or paths to go on with.
     match specialisation.refraction {
         Some(_) => common.push((5, Read)),
-        None => common.extend([(12, ReadWrite), (18, Texels), (19, Uniform)]),
+        None => common.extend([(12, ReadWrite), (18, Texels(4)), (19, Uniform)]),
     }
     let (see_entry, places) = match specialisation.slots {
         Slots::Tiles => (SEE_TILES, Uniform),
@@ -218,7 +245,8 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
         |entry_point, own: &[(u32, Access)]| stage(gpu, &module, entry_point, &constants, &[&common[..], own].concat());
     let between = || {
         let module = gpu.shader_module(&Module::between_stages())?;
-        let group = [("GROUP", f64::from(specialisation.workgroup))];
+        let mut group = vec![("GROUP", f64::from(specialisation.workgroup))];
+        group.extend(constants.iter().filter(|(name, _)| *name == "PATHS"));
         stage(gpu, &module, "begin_bounce", &group, &[(12, ReadWrite), (16, ReadWrite)])
     };
     let resolve = || {
@@ -231,8 +259,15 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
     std::thread::scope(|scope| {
         let see = scope.spawn(|| kernel(see_entry, &primary));
         let bounce = specialisation.has_paths().then(|| {
-            let walk = kernel(WALK_PATHS, &[(11, vectors)])?;
-            Ok::<_, Error>([between()?, walk])
+            let bounce = match specialisation.walk {
+                Walk::AtOnce => Bounce { begin: between()?, walk: kernel(WALK_PATHS, &[(11, vectors)])?, shade: None },
+                Walk::InTurn(_) => {
+                    let shade = scope.spawn(|| kernel(SHADE_PATHS, &[(11, vectors), (22, words)]));
+                    let walk = kernel(WALK_PATHS, &[(11, vectors), (23, Texels(1))])?;
+                    Bounce { begin: between()?, walk, shade: Some(joined(shade)?) }
+                }
+            };
+            Ok::<_, Error>(bounce)
         });
         let resolve = (specialisation.samples > 1).then(resolve);
         Ok(Stages { see: joined(see)?, bounce: bounce.transpose()?, resolve: resolve.transpose()? })
@@ -272,7 +307,7 @@ fn stage(
             Access::Table(Textures::Stored, components) => {
                 storage_texture(wgpu::StorageTextureAccess::ReadOnly, components)
             }
-            Texels => storage_texture(wgpu::StorageTextureAccess::WriteOnly, 4),
+            Texels(components) => storage_texture(wgpu::StorageTextureAccess::WriteOnly, components),
         },
         count: None,
     };

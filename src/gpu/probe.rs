@@ -12,7 +12,7 @@ use super::layout::{Layout, ListValues, ParamValues, ShapeValues, double, single
 use super::pack::{bytes, low_light, low_shape, shape_value};
 use super::pipeline::Specialisation;
 use super::readable::Readable;
-use super::shader::{Kernel, Module, Places, Slots, Storage};
+use super::shader::{Kernel, Module, Places, Slots, Storage, Walk};
 use crate::camera::NEAR_T_MIN;
 use crate::effects::EffectSet;
 use crate::geometry::{Ellipsoid, range_factor, shape_indices};
@@ -264,6 +264,7 @@ impl<'a> Prober<'a> {
             storage: Storage::Ranges,
             lights: 0,
             places: Places::Large,
+            walk: Walk::AtOnce,
             count_rays: false,
             workgroup: 64,
             samples: 1,

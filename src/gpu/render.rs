@@ -12,9 +12,9 @@ use wgpu::util::DeviceExt;
 use super::device::Gpu;
 use super::error::Error;
 use super::pack::{Packed, list_contents};
-use super::pipeline::{Resource, Specialisation, Stage, Stages};
+use super::pipeline::{Bounce, Resource, Specialisation, Stage, Stages};
 use super::readable::Readable;
-use super::shader::{Kernel, Slots};
+use super::shader::{Kernel, Slots, Walk};
 use super::tables::{are_too_large, check_fits, list_resources, scene_resources};
 use super::timestamps::Timestamps;
 use super::upload::empty_texels;
@@ -95,15 +95,25 @@ struct Work {
     begin_group: Option<wgpu::BindGroup>,
     /// For a bounce, by whether another one follows, and from which of the two buffers of paths to the other.
     walk_groups: Option<[[wgpu::BindGroup; 2]; 2]>,
+    /// Likewise for its shading.
+    shade_groups: Option<[[wgpu::BindGroup; 2]; 2]>,
     resolve_group: Option<wgpu::BindGroup>,
     tiles: wgpu::Buffer,
     stage: wgpu::Buffer,
-    /// Workgroups of the next bounce.
+    /// Workgroups of the next bounce: of the kernel with a path an invocation, and of the one with several.
     workgroups: wgpu::Buffer,
     pixels: Readable,
     ray_counts: Readable,
     /// Tiles that the buffers hold.
     capacity: u32,
+}
+
+/// How many workgroups a dispatch has.
+#[derive(Debug, Clone, Copy)]
+enum Count {
+    Known(u32),
+    /// As many as the device has found, at this offset.
+    Found(u64),
 }
 
 /// Bytes of the shader's `Stage`.
@@ -136,7 +146,7 @@ impl<'a> GpuRenderer<'a> {
         if tuning.density != Density::DEFAULT && are_too_large(gpu, &list_contents(&accel)) {
             accel = lists(&Density::DEFAULT);
         }
-        let specialisation = specialisation.with_lists(&accel);
+        let specialisation = specialisation.with_lists(&accel, tuning);
         let packed = Packed::new(scene, settings, effects, kernel, &accel);
         let list_tables = list_contents(&accel);
         check_fits(gpu, &packed, &list_tables)?;
@@ -306,24 +316,30 @@ impl<'a> GpuRenderer<'a> {
                 label: None,
                 timestamp_writes: self.timestamps.as_ref().map(Timestamps::writes),
             });
-            let mut run = |stage: &Stage, group: &wgpu::BindGroup, workgroups: Option<u32>| {
+            let mut run = |stage: &Stage, group: &wgpu::BindGroup, workgroups: Count| {
                 pass.set_pipeline(&stage.pipeline);
                 pass.set_bind_group(0, group, &[]);
                 match workgroups {
-                    Some(count) => pass.dispatch_workgroups(count, 1, 1),
-                    None => pass.dispatch_workgroups_indirect(&work.workgroups, 0),
+                    Count::Known(count) => pass.dispatch_workgroups(count, 1, 1),
+                    Count::Found(offset) => pass.dispatch_workgroups_indirect(&work.workgroups, offset),
                 }
             };
-            let tiles = Some(self.workgroups(tiles.len()));
+            let tiles = Count::Known(self.workgroups(tiles.len()));
             let stages = &work.stages;
             run(&stages.see, &work.see_group, tiles);
-            if let (Some([begin, walk]), Some(begin_group), Some(groups)) =
+            if let (Some(Bounce { begin, walk, shade }), Some(begin_group), Some(walk_groups)) =
                 (&stages.bounce, &work.begin_group, &work.walk_groups)
             {
                 for bounce in 0..self.max_depth {
-                    let has_next = bounce + 1 < self.max_depth;
-                    run(begin, begin_group, Some(1));
-                    run(walk, &groups[usize::from(has_next)][bounce as usize % 2], None);
+                    let (has_next, from) = (usize::from(bounce + 1 < self.max_depth), bounce as usize % 2);
+                    run(begin, begin_group, Count::Known(1));
+                    match (shade, &work.shade_groups) {
+                        (Some(shade), Some(shade_groups)) => {
+                            run(walk, &walk_groups[has_next][from], Count::Found(12));
+                            run(shade, &shade_groups[has_next][from], Count::Found(0));
+                        }
+                        _ => run(walk, &walk_groups[has_next][from], Count::Found(0)),
+                    }
                 }
             }
             if let (Some(resolve), Some(group)) = (&stages.resolve, &work.resolve_group) {
@@ -388,13 +404,15 @@ impl Work {
         let ray_counts = Readable::new(gpu, if specialisation.count_rays { slots } else { 1 });
         let paths = specialisation.path_size() * if specialisation.has_paths() { slots } else { 1 };
         let color_size = if specialisation.kernel.is_double() { 32 } else { 16 };
-        let paths = [0, 1].map(|_| empty_texels(gpu, paths));
+        let paths = [0, 1].map(|_| empty_texels(gpu, paths, 4));
+        let in_turn = specialisation.has_paths() && specialisation.walk != Walk::AtOnce;
+        let hits = empty_texels(gpu, if in_turn { 4 * slots } else { 4 }, 1);
         let tiles = match specialisation.slots {
             Slots::Tiles => empty(u64::from(MAX_DISPATCH_TILES) * 4, wgpu::BufferUsages::UNIFORM | copied),
             Slots::List => empty(pixel_count * 8, storage | copied),
         };
         let stage = empty(STAGE_SIZE, storage | copied);
-        let workgroups = empty(12, storage | wgpu::BufferUsages::INDIRECT);
+        let workgroups = empty(24, storage | wgpu::BufferUsages::INDIRECT);
         let colors = stages.resolve.as_ref().map(|_| empty(slots * color_size, storage));
         let results = colors.as_ref().unwrap_or(&pixels.buffer);
         let mut all = resources.to_vec();
@@ -415,19 +433,24 @@ impl Work {
         });
         let turn = |stage: &Stage, from: usize, goes_on: usize| {
             let [from, to] = [from, 1 - from].map(|half| Resource::Texels(paths[half].clone()));
-            let turn = [(11, from), (18, to), (19, Resource::Buffer(has_next[goes_on].clone()))];
+            let [read, written] = [0, 1].map(|_| Resource::Texels(hits.clone()));
+            let has_next = Resource::Buffer(has_next[goes_on].clone());
+            let turn = [(11, from), (18, to), (19, has_next), (22, read), (23, written)];
             stage.bind(gpu, &[&all[..], &turn].concat())
         };
         let see_group = turn(&stages.see, 1, usize::from(has_bounces));
-        let begin_group = stages.bounce.as_ref().map(|[begin, _]| begin.bind(gpu, &all));
-        let walks = |walk| [0, 1].map(|goes_on| [0, 1].map(|from| turn(walk, from, goes_on)));
-        let walk_groups = stages.bounce.as_ref().map(|[_, walk]| walks(walk));
+        let begin_group = stages.bounce.as_ref().map(|bounce| bounce.begin.bind(gpu, &all));
+        let all_turns = |stage| [0, 1].map(|goes_on| [0, 1].map(|from| turn(stage, from, goes_on)));
+        let walk_groups = stages.bounce.as_ref().map(|bounce| all_turns(&bounce.walk));
+        let shade = stages.bounce.as_ref().and_then(|bounce| bounce.shade.as_ref());
+        let shade_groups = shade.map(all_turns);
         let resolve_group = stages.resolve.as_ref().map(|resolve| resolve.bind(gpu, &all));
         Self {
             stages,
             see_group,
             begin_group,
             walk_groups,
+            shade_groups,
             resolve_group,
             tiles,
             stage,

@@ -98,6 +98,15 @@ pub enum Storage {
     Ranges,
 }
 
+/// How the paths of a bounce are walked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Walk {
+    /// One an invocation, which also shades what it meets.
+    AtOnce,
+    /// So many an invocation, one after another; then a kernel shades what they have met.
+    InTurn(NonZeroU32),
+}
+
 /// Which pixels a dispatch renders.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Slots {
@@ -105,6 +114,25 @@ pub enum Slots {
     Tiles,
     /// Those of a list.
     List,
+}
+
+/// What decides which text renders.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Variant {
+    /// What intersects rays with spheres.
+    pub kernel: Kernel,
+    /// How spheres and lights reach it.
+    pub storage: Storage,
+    /// Where the spheres are that secondary rays look for.
+    pub places: Places,
+    /// Whether a pixel has several samples.
+    pub samples: bool,
+    /// Where something refracts, how many rays wait at the most.
+    pub refraction: Option<NonZeroU32>,
+    /// Which pixels a dispatch renders.
+    pub slots: Slots,
+    /// How paths are walked, where nothing refracts.
+    pub walk: Walk,
 }
 
 /// The scalar of the kernel and what the host packs.
@@ -167,27 +195,9 @@ pub struct Module {
 }
 
 impl Module {
-    /// The module that renders with `kernel`, one sample a pixel or several; where something refracts, with room for so many
-    /// rays that wait.
-    pub fn render(
-        kernel: Kernel,
-        storage: Storage,
-        places: Places,
-        samples: bool,
-        refraction: Option<NonZeroU32>,
-    ) -> Self {
-        Self::render_slots(kernel, storage, places, samples, refraction, Slots::Tiles)
-    }
-
-    /// Likewise, for dispatches over tiles or over lists of pixels.
-    pub fn render_slots(
-        kernel: Kernel,
-        storage: Storage,
-        places: Places,
-        samples: bool,
-        refraction: Option<NonZeroU32>,
-        slots: Slots,
-    ) -> Self {
+    /// The module that renders like this.
+    pub fn render(variant: &Variant) -> Self {
+        let Variant { kernel, storage, places, samples, refraction, slots, walk } = *variant;
         let mut parts = intersection_parts(kernel, storage);
         parts.extend(match places {
             Places::Grid => vec![part!("grid.wgsl"), part!("secondary_grid.wgsl")],
@@ -204,6 +214,10 @@ impl Module {
             parts.extend([Part { name: "(the host)", text }, part!("trees.wgsl")]);
         } else {
             parts.push(part!("paths.wgsl"));
+            parts.push(match walk {
+                Walk::AtOnce => part!("walk_at_once.wgsl"),
+                Walk::InTurn(_) => part!("walk_in_turn.wgsl"),
+            });
         }
         parts.push(part!("stages.wgsl"));
         parts.push(match slots {

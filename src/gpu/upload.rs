@@ -65,11 +65,11 @@ pub(super) fn texel_format(components: u32) -> wgpu::TextureFormat {
     }
 }
 
-/// A texture for so many bytes that kernels keep and read, in texels of four `u32`.
-pub(super) fn empty_texels(gpu: &Gpu, bytes: u64) -> wgpu::TextureView {
+/// A texture for so many bytes that kernels keep and read, in texels of one, two or four `u32`.
+pub(super) fn empty_texels(gpu: &Gpu, bytes: u64, components: u32) -> wgpu::TextureView {
     let usage = table_usage(gpu) | wgpu::TextureUsages::STORAGE_BINDING;
-    let rows = bytes.div_ceil(u64::from(ROW) * 16) as u32;
-    texture(gpu, rows, wgpu::TextureFormat::Rgba32Uint, usage).create_view(&wgpu::TextureViewDescriptor::default())
+    let rows = bytes.div_ceil(u64::from(ROW * components * 4)) as u32;
+    texture(gpu, rows, texel_format(components), usage).create_view(&wgpu::TextureViewDescriptor::default())
 }
 
 /// How kernels read it.

@@ -18,13 +18,27 @@ pub struct Knob {
 }
 
 /// All numbers of a tuning.
-pub static KNOBS: [Knob; 8] = [
+pub static KNOBS: [Knob; 10] = [
     Knob {
         name: "workgroup",
         limits: [1.0, 256.0],
         candidates: &[8.0, 16.0, 32.0, 64.0, 128.0, 256.0],
         get: |tuning| f64::from(tuning.workgroup),
         set: |tuning, value| tuning.workgroup = value as u32,
+    },
+    Knob {
+        name: "paths",
+        limits: [1.0, 64.0],
+        candidates: &[8.0, 16.0, 32.0, 64.0],
+        get: |tuning| f64::from(tuning.paths),
+        set: |tuning, value| tuning.paths = value as u32,
+    },
+    Knob {
+        name: "in_turn_from",
+        limits: [0.0, 1e9],
+        candidates: &[1e3, 1e4, 1e5, 1e9],
+        get: |tuning| tuning.in_turn_from,
+        set: |tuning, value| tuning.in_turn_from = value,
     },
     Knob {
         name: "stored_tables",

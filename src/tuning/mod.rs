@@ -16,6 +16,10 @@ pub use knobs::{KNOBS, Knob};
 pub struct Tuning {
     /// Invocations of a workgroup of the kernel that is over paths, not over tiles.
     pub workgroup: u32,
+    /// Paths that an invocation walks, one after another, through the lists of many spheres.
+    pub paths: u32,
+    /// Entries of the grid's lists from which on there are many.
+    pub in_turn_from: f64,
     /// Whether kernels read a scene from storage textures instead of sampled ones, where the device has as many as they need.
     pub stored_tables: bool,
     /// How fine the lists of spheres are.
@@ -69,6 +73,8 @@ impl Tuning {
     pub const fn of(class: Class) -> Self {
         let software = Self {
             workgroup: 64,
+            paths: 32,
+            in_turn_from: 1e4,
             // lavapipe takes three quarters of the time of sampled ones.
             stored_tables: true,
             density: Density::DEFAULT,

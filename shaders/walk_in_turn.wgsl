@@ -1,0 +1,84 @@
+// One bounce of each path, in two kernels: what its ray meets, and its shading.
+//
+// The lanes of a vector wait for the one with the longest walk, which among many spheres takes more than twice as long as the
+// others. So an invocation walks several paths, one after another, and begins the next while its neighbours are still on their
+// way.
+
+// For each path the sphere that its ray meets, which is below 2^24, and these bits.
+@group(0) @binding(22) var hits: WordTable;
+@group(0) @binding(23) var kept_hits: texture_storage_2d<r32uint, write>;
+const HIT_FOUND: u32 = 1u << 31u;
+const HIT_INSIDE: u32 = 1u << 30u;
+const HIT_CUT: u32 = 1u << 29u;
+
+// Paths of an invocation.
+override PATHS: u32 = 32u;
+
+// Turns between two looks whether a lane is free for its next path.
+const TURNS: u32 = 16u;
+// What these, the look itself and the large spheres add at the most to the turns of all loops, of which software devices end an
+// invocation's after 65,535: see is_cut.
+const TURNS_OF_LOOK: u32 = 32u;
+const MAX_TURNS: u32 = 60000u;
+
+@compute @workgroup_size(GROUP)
+fn walk_paths(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) index: u32) {
+    params = given_params;
+    let first = group.x * GROUP * PATHS;
+    let end = min(stage.path_count, first + GROUP * PATHS);
+    let range = reflection_range();
+    // The path that is walked, if it is below `end`, and the next one.
+    var current = end;
+    var next = first + index;
+    var ray: Ray;
+    var own: Own;
+    var nearest = no_hit();
+    var walk: Walk;
+    walk.goes_on = false;
+    var turns = 0u;
+    loop {
+        let is_over = turns >= MAX_TURNS;
+        if is_over | !walk.goes_on {
+            if current < end {
+                let bits = select(0u, HIT_FOUND, nearest.found) | select(0u, HIT_INSIDE, nearest.inside);
+                let word = nearest.sphere | bits | select(0u, HIT_CUT, walk.goes_on);
+                textureStore(kept_hits, place_of_texel(current), vec4<u32>(word));
+            }
+            let path = path_of(min(next, end - 1u));
+            ray = path.ray;
+            own = path.own;
+            nearest = nearest_outside(ray, own, range);
+            walk = begin_walk(ray);
+            walk.goes_on = next < end;
+            current = next;
+            next += GROUP;
+        }
+        var turn = 0u;
+        loop {
+            if walk.goes_on {
+                take_turn(&walk, &nearest, ray, own, range);
+            }
+            turn++;
+            if !walk.goes_on | (turn == TURNS) {
+                break;
+            }
+        }
+        turns += TURNS_OF_LOOK;
+        if current >= end {
+            break;
+        }
+    }
+}
+
+@compute @workgroup_size(GROUP)
+fn shade_paths(@builtin(global_invocation_id) id: vec3<u32>) {
+    params = given_params;
+    let count = stage.path_count;
+    let is_path = id.x < count;
+    let index = min(id.x, count - 1u);
+    let path = path_of(index);
+    let word = word_at(hits, index);
+    is_cut |= (word & HIT_CUT) != 0u;
+    let hit = Hit(is_path & ((word & HIT_FOUND) != 0u), distance_of(FAR), word & 0xffffffu, (word & HIT_INSIDE) != 0u);
+    shade(path.ray, hit, is_path, path.slot, path.color, path.throughput);
+}
