@@ -57,7 +57,7 @@ fn take_turn(walk: ptr<function, Walk>, nearest: ptr<function, Hit>, ray: Ray, o
     let known = *nearest;
     if (*walk).list.x < (*walk).list.y {
         let sphere = entry_at((*walk).list.x);
-        *nearest = nearer_of(known, ray, body_of(sphere), sphere, own, range);
+        *nearest = nearer_of(known, ray, body_in_grid((*walk).list.x, sphere), sphere, own, range);
         (*walk).list.x++;
     }
     if (*walk).list.x >= (*walk).list.y {

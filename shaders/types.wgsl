@@ -32,6 +32,8 @@ struct Params {
     max_depth: u32,
     // 0, which no compiler knows: see barrier() in eft.wgsl.
     zero: u32,
+    // Where in `entries` those of the grid begin.
+    grid_entries: u32,
 }
 
 // What the intersection reads of a sphere.

@@ -25,7 +25,7 @@ pub struct Density {
 impl Density {
     /// What is best on the CPU, for the reference and for lavapipe alike.
     pub const DEFAULT: Self =
-        Self { light_entries: 12.0, light_entries_of_many: 6.0, grid_cells: 3.0, grid_cells_of_many: 1.5 };
+        Self { light_entries: 12.0, light_entries_of_many: 3.0, grid_cells: 3.0, grid_cells_of_many: 1.5 };
 
     /// How many entries the lists of one of so many lights may have, roughly.
     pub(super) fn entries_of_a_light(&self, spheres: usize, lights: usize) -> u64 {

@@ -53,6 +53,7 @@ pub struct ListValues {
     pub screen_across: u32,
     pub grid_cells: UVec3,
     pub grid_first: u32,
+    pub grid_entries: u32,
     pub light_slack: f64,
 }
 
@@ -142,6 +143,8 @@ macro_rules! layout {
                     max_depth: u32,
                     /// 0, which no compiler knows.
                     zero: u32,
+                    /// Where in the entries those of the grid begin.
+                    grid_entries: u32,
                     /// To the size that WGSL gives the struct.
                     padding1: [u32; $params1],
                 }
@@ -264,6 +267,7 @@ macro_rules! layout {
                         screen_across: values.lists.screen_across,
                         grid_cells: values.lists.grid_cells.to_array(),
                         grid_first: values.lists.grid_first,
+                        grid_entries: values.lists.grid_entries,
                         window_low: values.window_low,
                         light_count: values.light_count,
                         max_depth: values.max_depth,
@@ -329,21 +333,21 @@ macro_rules! layout {
 
 layout!(
     /// The structs of the `f32` kernels.
-    single, f32, params 0 0, shape 0, material 1, light 1, face 1
+    single, f32, params 0 3, shape 0, material 1, light 1, face 1
 );
 layout!(
     /// The structs of the `f64` kernels.
-    double, f64, params 1 0, shape 1, material 2, light 2, face 2
+    double, f64, params 1 7, shape 1, material 2, light 2, face 2
 );
 
 const _: () = {
-    assert!(size_of::<single::Params>() == 112 && std::mem::offset_of!(single::Params, window_low) == 96);
+    assert!(size_of::<single::Params>() == 128 && std::mem::offset_of!(single::Params, window_low) == 96);
     assert!(size_of::<single::Shape>() == 32 && std::mem::offset_of!(single::Shape, inv_scale) == 16);
     assert!(size_of::<single::Material>() == 48 && std::mem::offset_of!(single::Material, scale) == 32);
     assert!(size_of::<single::Light>() == 32 && std::mem::offset_of!(single::Light, intensity) == 16);
     assert!(size_of::<single::Face>() == 32 && size_of::<double::Face>() == 48);
     assert!(size_of::<single::Glass>() == 12 && size_of::<double::Glass>() == 24);
-    assert!(size_of::<double::Params>() == 160 && std::mem::offset_of!(double::Params, window_low) == 144);
+    assert!(size_of::<double::Params>() == 192 && std::mem::offset_of!(double::Params, window_low) == 144);
     assert!(size_of::<double::Shape>() == 64 && std::mem::offset_of!(double::Shape, inv_scale) == 32);
     assert!(size_of::<double::Material>() == 96 && std::mem::offset_of!(double::Material, scale) == 64);
     assert!(size_of::<double::Light>() == 64 && std::mem::offset_of!(double::Light, intensity) == 32);

@@ -50,6 +50,16 @@ impl<'a> Contents<'a> {
         Self { count, size, write: Box::new(write) }
     }
 
+    /// Elements of `all` by these indices.
+    pub(super) fn gathered(all: &'a Contents<'_>, indices: &'a [u32]) -> Self {
+        let write = |range: Range<usize>, bytes: &mut [u8]| {
+            for (place, &index) in bytes.chunks_exact_mut(all.size).zip(&indices[range]) {
+                all.write(index as usize * all.size, place);
+            }
+        };
+        Self { count: indices.len(), size: all.size, write: Box::new(write) }
+    }
+
     /// Bytes that are packed already.
     pub(super) fn packed(all: &'a [u8]) -> Self {
         let write = |range: Range<usize>, bytes: &mut [u8]| bytes.copy_from_slice(&all[range]);
@@ -158,6 +168,7 @@ fn pack<'a, L: Layout + 'a>(
     let window_low = with_low.then(|| window().map(residual::<L>)).into_iter().flatten();
     let window: Vec<DVec3> = window().chain(window_low).collect();
     let bases = list_bases(accel);
+    let entries_before_grid = accel.grid.as_ref().map_or(0, |_| entry_bases(accel).last().unwrap_or_default());
     let params = ParamValues {
         background: scene.background,
         ambient: scene.ambient,
@@ -166,7 +177,10 @@ fn pack<'a, L: Layout + 'a>(
         reflection_t_min: settings.secondary.reflection_t_min(),
         quantize_bias: settings.quantize.bias(),
         window_rows: columns,
-        lists: list_values(accel, accel.grid.as_ref().map_or(0, |_| bases[bases.len() - 1])),
+        lists: ListValues {
+            grid_entries: entries_before_grid,
+            ..list_values(accel, accel.grid.as_ref().map_or(0, |_| bases[bases.len() - 1]))
+        },
         window_low: columns + rows,
         light_count: scene.lights.len() as u32,
         max_depth: effects.depth,
@@ -215,11 +229,15 @@ fn list_bases(accel: &Acceleration) -> Vec<u32> {
     all_lists(accel).scan(0, next).collect()
 }
 
+/// Where in the entries of all lists those of each begin.
+fn entry_bases(accel: &Acceleration) -> impl Iterator<Item = u32> {
+    let next = |base: &mut u32, lists: &Lists| Some(std::mem::replace(base, *base + lists.entries.len() as u32));
+    all_lists(accel).scan(0, next)
+}
+
 /// Where the list of each cell begins in the entries of all lists and where it ends; and these entries.
 pub(super) fn list_contents(accel: &Acceleration) -> [Contents<'_>; 2] {
-    let next = |base: &mut u32, lists: &Lists| Some(std::mem::replace(base, *base + lists.entries.len() as u32));
-    let bases = all_lists(accel).scan(0, next);
-    let cells = all_lists(accel).zip(bases).map(|(lists, base)| {
+    let cells = all_lists(accel).zip(entry_bases(accel)).map(|(lists, base)| {
         let cell = move |index: usize| [lists.offsets[index] + base, lists.offsets[index + 1] + base];
         (lists.cells(), cell)
     });

@@ -14,7 +14,7 @@ use crate::settings::{Secondary, Settings, Specular};
 use crate::tuning::Tuning;
 
 /// Textures that a kernel reads and writes at the most, whatever it is specialised for.
-pub(super) const MAX_TEXTURES: u32 = 14;
+pub(super) const MAX_TEXTURES: u32 = 16;
 
 /// What a pipeline is specialised for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -82,6 +82,16 @@ impl Specialisation {
             _ => Walk::AtOnce,
         };
         Self { places, walk, ..self }
+    }
+
+    /// Whether walks read copies of the spheres in the order of the grid's lists.
+    pub(super) fn copies(&self) -> bool {
+        self.walk != Walk::AtOnce && self.has_paths() && !self.kernel.carries_low()
+    }
+
+    /// Whether the intersection reads second halves of shapes.
+    pub(super) fn reads_shape_ends(&self) -> bool {
+        self.effects.has(Effect::Ellipsoids) || self.skip_self
     }
 
     /// Vectors that keep a path: as `shaders/paths.wgsl` has them.
@@ -254,6 +264,7 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
         let constants = [("SAMPLES", f64::from(specialisation.samples))];
         stage(gpu, &module, "resolve", &constants, &[(0, Uniform), (7, Read), (15, ReadWrite)])
     };
+    let copies: &[(u32, Access)] = if specialisation.copies() { &[(24, vectors), (25, vectors)] } else { &[] };
     // A driver compiles a kernel on the thread that asks for it: side by side. The largest one goes here, since allocating is
     // cheapest on the main thread.
     std::thread::scope(|scope| {
@@ -263,7 +274,7 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
                 Walk::AtOnce => Bounce { begin: between()?, walk: kernel(WALK_PATHS, &[(11, vectors)])?, shade: None },
                 Walk::InTurn(_) => {
                     let shade = scope.spawn(|| kernel(SHADE_PATHS, &[(11, vectors), (22, words)]));
-                    let walk = kernel(WALK_PATHS, &[(11, vectors), (23, Texels(1))])?;
+                    let walk = kernel(WALK_PATHS, &[&[(11, vectors), (23, Texels(1))][..], copies].concat())?;
                     Bounce { begin: between()?, walk, shade: Some(joined(shade)?) }
                 }
             };

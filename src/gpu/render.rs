@@ -15,7 +15,7 @@ use super::pack::{Packed, list_contents};
 use super::pipeline::{Bounce, Resource, Specialisation, Stage, Stages};
 use super::readable::Readable;
 use super::shader::{Kernel, Slots, Walk};
-use super::tables::{are_too_large, check_fits, list_resources, scene_resources};
+use super::tables::{are_too_large, check_fits, copy_resources, list_resources, scene_resources};
 use super::timestamps::Timestamps;
 use super::upload::empty_texels;
 use crate::accel::{Acceleration, Cover, Density, Rounding};
@@ -155,6 +155,7 @@ impl<'a> GpuRenderer<'a> {
         let covered_tiles = picture_tiles.min(cover.most());
         // The lists on the host go before the spheres take memory on the device.
         let mut resources = list_resources(gpu, &list_tables)?;
+        resources.extend(copy_resources(gpu, &packed, &accel, &specialisation)?);
         drop(list_tables);
         drop(accel);
         resources.extend(scene_resources(gpu, &packed, &specialisation)?);

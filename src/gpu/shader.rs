@@ -199,10 +199,12 @@ impl Module {
     pub fn render(variant: &Variant) -> Self {
         let Variant { kernel, storage, places, samples, refraction, slots, walk } = *variant;
         let mut parts = intersection_parts(kernel, storage);
+        let copies = refraction.is_none() && walk != Walk::AtOnce && !kernel.carries_low();
+        let bodies = if copies { part!("bodies_copied.wgsl") } else { part!("bodies_shared.wgsl") };
         parts.extend(match places {
-            Places::Grid => vec![part!("grid.wgsl"), part!("secondary_grid.wgsl")],
+            Places::Grid => vec![bodies, part!("grid.wgsl"), part!("secondary_grid.wgsl")],
             Places::Large => vec![part!("secondary_large.wgsl")],
-            Places::Both => vec![part!("grid.wgsl"), part!("secondary_both.wgsl")],
+            Places::Both => vec![bodies, part!("grid.wgsl"), part!("secondary_both.wgsl")],
         });
         parts.extend([part!("film.wgsl"), part!("quantize.wgsl")]);
         parts.push(if samples { part!("film_samples.wgsl") } else { part!("film_pixels.wgsl") });

@@ -5,6 +5,7 @@ use super::error::Error;
 use super::pack::{Contents, Packed};
 use super::pipeline::{Resource, Specialisation};
 use super::upload::{max_texels, upload, upload_texels};
+use crate::accel::Acceleration;
 
 /// The textures of the lists, by binding.
 pub(super) fn list_resources(gpu: &Gpu, [cells, entries]: &[Contents; 2]) -> Result<Vec<(u32, Resource)>, Error> {
@@ -12,6 +13,21 @@ pub(super) fn list_resources(gpu: &Gpu, [cells, entries]: &[Contents; 2]) -> Res
         (13, Resource::Texels(upload_texels(gpu, cells, 2)?)),
         (17, Resource::Texels(upload_texels(gpu, entries, 1)?)),
     ])
+}
+
+/// The textures of the shapes in the order of the grid's lists, by binding, where kernels read them so.
+pub(super) fn copy_resources(
+    gpu: &Gpu,
+    packed: &Packed,
+    accel: &Acceleration,
+    specialisation: &Specialisation,
+) -> Result<Vec<(u32, Resource)>, Error> {
+    let Some(grid) = accel.grid.as_ref().filter(|_| specialisation.copies()) else { return Ok(Vec::new()) };
+    let texels = |half: usize, entries: &[u32]| {
+        upload_texels(gpu, &Contents::gathered(&packed.shapes[half], entries), 4).map(Resource::Texels)
+    };
+    let ends = if specialisation.reads_shape_ends() { &grid.lists.entries[..] } else { &[] };
+    Ok(vec![(24, texels(0, &grid.lists.entries)?), (25, texels(1, ends)?)])
 }
 
 /// The buffers and textures of the scene, by binding, beside those of the lists.

@@ -1,0 +1,15 @@
+// Spheres in the lists of the grid: copies beside each other, since among many spheres memory is what a walk waits for.
+
+// The first halves of the shapes, and the second, entry by entry.
+@group(0) @binding(24) var grid_shapes: Table;
+@group(0) @binding(25) var grid_shape_ends: Table;
+
+fn body_in_grid(entry: u32, sphere: u32) -> Body {
+    let at = entry - params.grid_entries;
+    var shape = Shape(vector_at(grid_shapes, at), vec3r(), 0u);
+    if ELLIPSOIDS | SKIP_SELF {
+        shape.inv_scale = vector_at(grid_shape_ends, at).xyz;
+        shape.index = bits_at(grid_shape_ends, at);
+    }
+    return Body(shape);
+}
