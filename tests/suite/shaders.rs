@@ -7,8 +7,8 @@ use trueray::camera::Camera;
 use trueray::effects::{Effect, EffectSet, Effects, Request};
 use trueray::gpu::layout::{double, single};
 use trueray::gpu::{
-    Kernel, Module, Places, SEE_SAMPLES, SEE_TILES, SelfTest, Slots, Specialisation, Storage, Textures, WALK_PATHS,
-    echo_layout,
+    Kernel, Module, Parsed, Places, SEE_SAMPLES, SEE_TILES, SHADE_PATHS, SelfTest, Slots, Specialisation, Storage,
+    Textures, Variant, WALK_PATHS, Walk, echo_layout,
 };
 
 use trueray::precision::Tier;
@@ -17,14 +17,63 @@ use trueray::settings::Settings;
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
-/// Every kernel, with each way to find what secondary rays meet.
-fn kinds() -> impl Iterator<Item = (Kernel, Storage, Places)> {
+/// Every kernel, with each way to find what secondary rays meet, and some of the ways to read tables and to walk paths.
+fn kinds() -> impl Iterator<Item = Variant> {
     let kernels = Tier::ALL.map(Kernel::Tier).into_iter().chain([Kernel::Pairs]);
     let places = [Places::Grid, Places::Large, Places::Both];
-    // Each way to read tables, with some of the kernels.
-    let textures = [Textures::Stored, Textures::Sampled].into_iter().cycle();
     let kinds = kernels.flat_map(move |kernel| places.map(|places| (kernel, places)));
-    kinds.zip(textures).map(|((kernel, places), textures)| (kernel, Storage::Tables(textures), places))
+    let ways = [
+        (Textures::Stored, Walk::AtOnce),
+        (Textures::Sampled, Walk::InTurn(NonZeroU32::new(5).unwrap())),
+        (Textures::Sampled, Walk::AtOnce),
+        (Textures::Stored, Walk::InTurn(NonZeroU32::new(32).unwrap())),
+        (Textures::Stored, Walk::AtOnce),
+    ];
+    kinds.zip(ways.into_iter().cycle()).map(|((kernel, places), (textures, walk))| Variant {
+        kernel,
+        storage: Storage::Tables(textures),
+        places,
+        samples: false,
+        refraction: None,
+        slots: Slots::Tiles,
+        // Where no sphere is in the grid, there is nothing to walk through.
+        walk: if places == Places::Large { Walk::AtOnce } else { walk },
+    })
+}
+
+/// What a pipeline of this variant may be specialised for.
+fn specialisation(variant: &Variant, effects: EffectSet, flags: usize) -> Specialisation {
+    let Variant { kernel, storage, places, refraction, slots, walk, .. } = *variant;
+    let [skip_self, blinn, count_rays] = [1, 2, 4].map(|bit| flags & bit != 0);
+    let samples = if variant.samples { 2 } else { 1 };
+    Specialisation {
+        kernel,
+        effects,
+        refraction,
+        skip_self,
+        blinn,
+        storage,
+        lights: 2,
+        places,
+        walk,
+        samples,
+        slots,
+        count_rays,
+        workgroup: 64,
+    }
+}
+
+/// The kernels of a module.
+fn entry_points(variant: &Variant) -> Vec<&'static str> {
+    let see = match variant.slots {
+        Slots::Tiles => SEE_TILES,
+        Slots::List => SEE_SAMPLES,
+    };
+    match (variant.refraction, variant.walk) {
+        (Some(_), _) => vec![see],
+        (None, Walk::AtOnce) => vec![WALK_PATHS, see],
+        (None, Walk::InTurn(_)) => vec![WALK_PATHS, SHADE_PATHS, see],
+    }
 }
 
 fn validate(module: &naga::Module) -> naga::valid::ModuleInfo {
@@ -33,35 +82,52 @@ fn validate(module: &naga::Module) -> naga::valid::ModuleInfo {
 
 #[test]
 fn every_effect_set_is_valid() {
-    for (kernel, storage, places) in kinds() {
+    for kind in kinds() {
         let modules = [None, NonZeroU32::new(3)].map(|refraction| {
-            let module = Module::render(kernel, storage, places, false, refraction).parse().unwrap();
-            let info = validate(&module);
-            (refraction, module, info)
+            let variant = Variant { refraction, ..kind };
+            (variant, Parsed::new(&Module::render(&variant)).unwrap())
         });
-        for effects in EffectSet::every() {
-            let (refraction, module, info) = &modules[usize::from(effects.has(Effect::Refraction))];
-            for flags in 0..8 {
-                let [skip_self, blinn, count_rays] = [1, 2, 4].map(|bit| flags & bit != 0);
-                let specialisation = Specialisation {
-                    kernel,
-                    effects,
-                    refraction: *refraction,
-                    skip_self,
-                    blinn,
-                    storage,
-                    lights: 2,
-                    places,
-                    samples: 1,
-                    slots: Slots::Tiles,
-                    count_rays,
-                    workgroup: 64,
-                };
-                let constants = specialisation.constants().into_iter().map(|(name, value)| (name.to_owned(), value));
-                let constants = constants.collect();
-                let (specialised, _) =
-                    naga::back::pipeline_constants::process_overrides(module, info, None, &constants).unwrap();
-                validate(&specialised);
+        for (index, effects) in EffectSet::every().enumerate() {
+            let (variant, module) = &modules[usize::from(effects.has(Effect::Refraction))];
+            // All flags with all effects, and some with each set.
+            let flags = if effects == EffectSet::ALL { 0..8 } else { index % 8..index % 8 + 1 };
+            for flags in flags {
+                let constants = specialisation(variant, effects, flags).constants();
+                for entry_point in entry_points(variant) {
+                    validate(&module.specialised(entry_point, &constants).unwrap());
+                }
+            }
+        }
+    }
+}
+
+/// What the constants of a pipeline exclude is not there for drivers to translate.
+#[test]
+fn kernels_have_no_branch_that_is_known() {
+    fn has_known_branch(module: &naga::Module, function: &naga::Function, block: &naga::Block) -> bool {
+        block.iter().any(|statement| match statement {
+            naga::Statement::If { condition, accept, reject } => {
+                let known = matches!(
+                    function.expressions[*condition],
+                    naga::Expression::Literal(_) | naga::Expression::Constant(_) | naga::Expression::Override(_)
+                );
+                known || [accept, reject].into_iter().any(|block| has_known_branch(module, function, block))
+            }
+            naga::Statement::Loop { body, continuing, .. } => {
+                [body, continuing].into_iter().any(|block| has_known_branch(module, function, block))
+            }
+            naga::Statement::Block(block) => has_known_branch(module, function, block),
+            _ => false,
+        })
+    }
+    for variant in kinds() {
+        let module = Parsed::new(&Module::render(&variant)).unwrap();
+        let constants = specialisation(&variant, EffectSet::NONE, 0).constants();
+        for entry_point in entry_points(&variant) {
+            let module = module.specialised(entry_point, &constants).unwrap();
+            let functions = module.functions.iter().map(|(_, function)| function);
+            for function in functions.chain(module.entry_points.iter().map(|entry| &entry.function)) {
+                assert!(!has_known_branch(&module, function, &function.body), "{entry_point}: {:?}", function.name);
             }
         }
     }
@@ -70,23 +136,10 @@ fn every_effect_set_is_valid() {
 /// A constant that the shader does not declare would be ignored silently by the validation above.
 #[test]
 fn every_constant_is_an_override_and_every_override_is_set() {
-    for ((kernel, storage, places), refraction) in kinds().flat_map(|kind| [(kind, None), (kind, NonZeroU32::new(1))]) {
-        let module = Module::render(kernel, storage, places, false, refraction).parse().unwrap();
+    for variant in kinds().flat_map(|kind| [kind, Variant { refraction: NonZeroU32::new(1), ..kind }]) {
+        let module = Module::render(&variant).parse().unwrap();
         let mut declared: Vec<_> = module.overrides.iter().map(|(_, o)| o.name.clone().unwrap()).collect();
-        let specialisation = Specialisation {
-            kernel,
-            effects: EffectSet::ALL,
-            refraction,
-            skip_self: true,
-            blinn: true,
-            storage,
-            lights: 2,
-            places,
-            samples: 2,
-            slots: Slots::Tiles,
-            count_rays: true,
-            workgroup: 64,
-        };
+        let specialisation = specialisation(&variant, EffectSet::ALL, 7);
         let mut set: Vec<_> = specialisation.constants().into_iter().map(|(name, _)| name.to_owned()).collect();
         declared.sort();
         set.sort();
@@ -97,9 +150,9 @@ fn every_constant_is_an_override_and_every_override_is_set() {
 /// Scenes without Kt compile what they did before there was any refraction.
 #[test]
 fn only_refraction_brings_its_text() {
-    for (kernel, storage, places) in kinds() {
+    for kind in kinds() {
         let [without, with] =
-            [None, NonZeroU32::new(3)].map(|waiting| Module::render(kernel, storage, places, false, waiting));
+            [None, NonZeroU32::new(3)].map(|refraction| Module::render(&Variant { refraction, ..kind }));
         assert!(!without.text.contains("glasses") && !without.text.contains("MAX_WAITING"));
         assert!(with.text.contains("const MAX_WAITING: u32 = 3u;"));
         let (file, line) =
@@ -140,10 +193,13 @@ fn structs_lie_in_memory_as_the_shader_reads_them() {
 }
 
 fn assert_layout(tier: Tier, structs: [(&str, Fields, usize); 6]) {
-    let module =
-        Module::render(Kernel::Tier(tier), Storage::Tables(Textures::Stored), Places::Both, false, NonZeroU32::new(3))
-            .parse()
-            .unwrap();
+    let module = Module::render(&Variant {
+        kernel: Kernel::Tier(tier),
+        refraction: NonZeroU32::new(3),
+        ..kinds().next().unwrap()
+    })
+    .parse()
+    .unwrap();
     for (name, fields, size) in structs {
         let (_, found) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).unwrap();
         let naga::TypeInner::Struct { members, span } = &found.inner else { panic!("{name}") };
@@ -155,34 +211,39 @@ fn assert_layout(tier: Tier, structs: [(&str, Fields, usize); 6]) {
 }
 
 #[test]
-fn the_small_modules_are_valid_and_have_their_entry_points() {
-    let entry_points = |module: Module| {
+fn the_modules_are_valid_and_have_their_entry_points() {
+    let found = |module: Module| {
         let module = module.parse().unwrap();
         validate(&module);
-        module.entry_points.into_iter().map(|entry| entry.name).collect::<Vec<_>>()
+        let mut names: Vec<_> = module.entry_points.into_iter().map(|entry| entry.name).collect();
+        names.sort();
+        names
     };
-    assert_eq!(entry_points(Module::between_stages()), ["begin_bounce"]);
-    for (kernel, storage, places) in kinds() {
-        assert_eq!(entry_points(Module::resolve(kernel)), ["resolve"]);
-        for samples in [false, true] {
-            let paths = Module::render(kernel, storage, places, samples, None);
-            assert_eq!(entry_points(paths), [WALK_PATHS, SEE_TILES]);
-            let trees = Module::render(kernel, storage, places, samples, NonZeroU32::new(3));
-            assert_eq!(entry_points(trees), [SEE_TILES]);
-            let list = Module::render_slots(kernel, storage, places, samples, None, Slots::List);
-            assert_eq!(entry_points(list), [WALK_PATHS, SEE_SAMPLES]);
+    assert_eq!(found(Module::between_stages()), ["begin_bounce"]);
+    for kind in kinds() {
+        assert_eq!(found(Module::resolve(kind.kernel)), ["resolve"]);
+        for (samples, refraction, slots) in [
+            (false, None, Slots::Tiles),
+            (true, None, Slots::List),
+            (false, NonZeroU32::new(3), Slots::List),
+            (true, NonZeroU32::new(3), Slots::Tiles),
+        ] {
+            let variant = Variant { samples, refraction, slots, ..kind };
+            let mut expected = entry_points(&variant);
+            expected.sort_unstable();
+            assert_eq!(found(Module::render(&variant)), expected);
         }
     }
-    assert_eq!(entry_points(Module::flood()), ["jump"]);
+    assert_eq!(found(Module::flood()), ["jump"]);
     for fill in Fill::ALL {
-        assert_eq!(entry_points(Module::fill(fill)), ["fill"]);
+        assert_eq!(found(Module::fill(fill)), ["fill"]);
     }
 }
 
 #[test]
 fn no_two_bindings_have_the_same_number() {
-    for ((kernel, storage, places), refraction) in kinds().flat_map(|kind| [(kind, None), (kind, NonZeroU32::new(3))]) {
-        let module = Module::render(kernel, storage, places, false, refraction).parse().unwrap();
+    for variant in kinds().flat_map(|kind| [kind, Variant { refraction: NonZeroU32::new(3), ..kind }]) {
+        let module = Module::render(&variant).parse().unwrap();
         let mut bindings: Vec<_> =
             module.global_variables.iter().filter_map(|(_, v)| v.binding.map(|binding| binding.binding)).collect();
         let count = bindings.len();
@@ -194,8 +255,7 @@ fn no_two_bindings_have_the_same_number() {
 
 #[test]
 fn an_error_in_the_shader_names_its_file_and_line() {
-    let mut module =
-        Module::render(Kernel::Tier(Tier::Fast), Storage::Tables(Textures::Stored), Places::Both, false, None);
+    let mut module = Module::render(&kinds().next().unwrap());
     let line = 1 + module.text.lines().position(|line| line.contains("fn reflection_ray(")).unwrap() as u32;
     let (file, line_in_file) = module.place(line);
     assert_eq!(file, "shaders/reflect.wgsl");
@@ -205,6 +265,7 @@ fn an_error_in_the_shader_names_its_file_and_line() {
     module.text = module.text.replace("fn reflection_ray(surface: Surface)", "fn reflection_ray(surface: Surfaze)");
     let error = module.parse().unwrap_err();
     assert!(error.contains(&format!("shaders/reflect.wgsl:{line_in_file}:")), "{error}");
+    assert_eq!(Parsed::new(&module).unwrap_err(), error);
 }
 
 #[test]
@@ -253,10 +314,11 @@ fn the_device_reads_every_field_where_the_host_wrote_it() {
         expected[0].extend(grid.per_unit.to_array().map(single));
         expected[0].push(accel.screen.across);
         expected[0].extend(grid.cells.to_array());
-        let before_grid = std::iter::once(&accel.screen.lists).chain(&accel.lights.lists);
-        let cells: usize = before_grid.map(Lists::cells).sum();
+        let before_grid = || std::iter::once(&accel.screen.lists).chain(&accel.lights.lists);
+        let cells: usize = before_grid().map(Lists::cells).sum();
+        let entries: usize = before_grid().map(|lists| lists.entries.len()).sum();
         // 40 columns and as many rows; one light.
-        expected[0].extend([cells as u32, 80, 1, 5, 0]);
+        expected[0].extend([cells as u32, 80, 1, 5, 0, entries as u32]);
         assert_eq!(echo_layout(&gpu, &scene, &settings, &effects, kernel).unwrap(), expected.concat(), "{kernel:?}");
     }
 }
