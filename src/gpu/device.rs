@@ -1,6 +1,5 @@
 //! Finding and opening a Vulkan device.
 
-use std::borrow::Cow;
 use std::fmt;
 use std::str::FromStr;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -12,7 +11,6 @@ use super::kernel_cache::KernelCache;
 use super::pipeline::{MAX_TEXTURES, Specialisation, Stages, compile};
 use super::selftest::SelfTest;
 use super::shader::{Kernel, Module, Textures};
-use super::specialise::Parsed;
 use super::tuned::DeviceTuning;
 use crate::precision::Tier;
 use crate::tuning::Tuning;
@@ -318,22 +316,8 @@ impl Gpu {
 
     /// Hands the composed text to the driver.
     pub(super) fn shader_module(&self, module: &Module) -> Result<wgpu::ShaderModule, Error> {
-        self.trusted(wgpu::ShaderSource::Wgsl(module.text.as_str().into()))
-    }
-
-    /// The module of one kernel alone, with its constants.
-    pub(super) fn kernel_module(
-        &self,
-        module: &Parsed,
-        entry_point: &str,
-        constants: &[(&str, f64)],
-    ) -> Result<wgpu::ShaderModule, Error> {
-        let module = module.specialised(entry_point, constants).map_err(Error::Lost)?;
-        self.trusted(wgpu::ShaderSource::Naga(Cow::Owned(module)))
-    }
-
-    fn trusted(&self, source: wgpu::ShaderSource) -> Result<wgpu::ShaderModule, Error> {
-        let descriptor = wgpu::ShaderModuleDescriptor { label: None, source };
+        let descriptor =
+            wgpu::ShaderModuleDescriptor { label: None, source: wgpu::ShaderSource::Wgsl(module.text.as_str().into()) };
         self.checked("reading the shader", || {
             #[allow(
                 unsafe_code,

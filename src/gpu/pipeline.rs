@@ -6,7 +6,6 @@ use super::device::Gpu;
 use super::error::Error;
 use super::kernel_cache::KernelCache;
 use super::shader::{Kernel, Module, Places, Slots, Storage, Textures, Variant, Walk};
-use super::specialise::Parsed;
 use super::upload::texel_format;
 use crate::accel::Acceleration;
 use crate::effects::{Effect, EffectSet, Effects};
@@ -231,7 +230,7 @@ pub(super) struct Stages {
 /// Compiles the kernels of a picture.
 pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stages, Error> {
     let constants = specialisation.constants();
-    let module = Parsed::new(&specialisation.module()).map_err(Error::Lost)?;
+    let module = gpu.shader_module(&specialisation.module())?;
     let Storage::Tables(textures) = specialisation.storage else {
         return Err(Error::Lost("only scenes in tables are rendered".into()));
     };
@@ -252,10 +251,8 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
         Slots::List => (SEE_SAMPLES, Read),
     };
     let primary = [(4, vectors), (6, places)];
-    let kernel = |entry_point, own: &[(u32, Access)]| {
-        let module = gpu.kernel_module(&module, entry_point, &constants)?;
-        stage(gpu, &module, entry_point, &[], &[&common[..], own].concat())
-    };
+    let kernel =
+        |entry_point, own: &[(u32, Access)]| stage(gpu, &module, entry_point, &constants, &[&common[..], own].concat());
     let between = || {
         let module = gpu.shader_module(&Module::between_stages())?;
         let mut group = vec![("GROUP", f64::from(specialisation.workgroup))];

@@ -9,6 +9,7 @@ use trueray::precision::Tier;
 use trueray::scene::{Scene, Sphere};
 use trueray::settings::Settings;
 use trueray::stress::Random;
+use trueray::tuning::Tuning;
 
 use crate::support::scene_of;
 
@@ -137,27 +138,29 @@ fn the_reference_leaves_out_nothing() {
 fn the_device_leaves_out_nothing_at_any_tier() {
     let Some(_shared) = crate::support::gpu("the_device_leaves_out_nothing_at_any_tier") else { return };
     // Hundreds of pictures with few kinds of kernels.
-    let gpu = Gpu::open(&Choice::Auto).unwrap().keeping_kernels();
-    for kernel in Tier::ALL.into_iter().filter_map(|tier| gpu.kernel(tier).ok()) {
+    let mut gpu = Gpu::open(&Choice::Auto).unwrap().keeping_kernels();
+    let at_once = Tuning { in_turn_from: 1e9, ..gpu.tuned.tuning };
+    let in_turn = Tuning { in_turn_from: 0.0, paths: 5, ..at_once };
+    let kernels: Vec<_> = Tier::ALL.into_iter().filter_map(|tier| gpu.kernel(tier).ok()).collect();
+    for kernel in kernels {
         for seed in 0..140 {
             let (scene, settings) = (random_scene(seed), settings_of(seed));
+            gpu.set_tuning(at_once);
             let all = device(&gpu, kernel, &scene, &settings, Rounding::UNKNOWN);
+            gpu.set_tuning(if seed.is_multiple_of(2) { at_once } else { in_turn });
             let lists = device(&gpu, kernel, &scene, &settings, kernel.rounding());
             assert_eq!(first_difference(&all, &lists, &scene), None, "{kernel:?}, scene {seed}");
         }
     }
 }
 
-/// More spheres under one tile than some devices have turns of a loop for: the whole picture or an error, never a part of it.
-#[test]
-fn a_list_that_is_too_long_for_a_device_is_no_other_picture() {
-    let Some(gpu) = crate::support::gpu("a_list_that_is_too_long_for_a_device_is_no_other_picture") else { return };
+/// Some 80,000 spheres around one point, each of which hides all before it, so that only who comes to the end sees the last one.
+fn coincident(center: DVec3) -> Scene {
     let mut scene = scene_of("AMBIENT 1 1 1");
     (scene.width, scene.height) = (8, 8);
-    // Each hides all before it, so that only who comes to the end sees the last one.
     scene.spheres = (0..80_000_u32)
         .map(|index| Sphere {
-            center: DVec3::new(0.0, 0.0, -5.0),
+            center,
             scale: DVec3::new(2.0, 2.0, 1.0 + f64::from(index) * 1e-5),
             color: DVec3::splat(f64::from(index) / 80_000.0),
             ka: 1.0,
@@ -170,16 +173,44 @@ fn a_list_that_is_too_long_for_a_device_is_no_other_picture() {
         })
         .collect();
     (0..scene.spheres.len()).for_each(|_| scene.sphere_names.push("s"));
+    scene
+}
+
+/// The whole picture or an error, never a part of it.
+fn assert_whole_or_refused(gpu: &Gpu, scene: &Scene) {
     let settings = Settings::classic();
-    let expected = cpu(&scene, &settings, Rounding::DOUBLE);
+    let expected = cpu(scene, &settings, Rounding::DOUBLE);
     for kernel in Tier::ALL.into_iter().filter_map(|tier| gpu.kernel(tier).ok()) {
-        let effects = Effects::of(&scene, &settings);
+        let effects = Effects::of(scene, &settings);
         let mut rgb = vec![0; scene.width as usize * scene.height as usize * 3];
         let mut renderer =
-            GpuRenderer::with_rounding(&gpu, &scene, &settings, &effects, kernel, kernel.rounding()).unwrap();
+            GpuRenderer::with_rounding(gpu, scene, &settings, &effects, kernel, kernel.rounding()).unwrap();
         match renderer.rows(0, &mut rgb) {
-            Ok(_) => assert_eq!(first_difference(&rgb, &expected, &scene), None, "{kernel:?}"),
+            Ok(_) => assert_eq!(first_difference(&rgb, &expected, scene), None, "{kernel:?}"),
             Err(error) => assert!(error.to_string().contains("turns of a loop"), "{kernel:?}: {error}"),
         }
     }
+}
+
+/// More spheres under one tile than some devices have turns of a loop for.
+#[test]
+fn a_list_that_is_too_long_for_a_device_is_no_other_picture() {
+    let Some(gpu) = crate::support::gpu("a_list_that_is_too_long_for_a_device_is_no_other_picture") else { return };
+    assert_whole_or_refused(&gpu, &coincident(DVec3::new(0.0, 0.0, -5.0)));
+}
+
+/// Likewise behind the eye, where only a mirror shows them.
+#[test]
+fn a_walk_that_is_too_long_for_a_device_is_no_other_picture() {
+    let Some(mut gpu) = crate::support::gpu("a_walk_that_is_too_long_for_a_device_is_no_other_picture") else { return };
+    let mut scene = coincident(DVec3::new(0.0, 0.0, 9.0));
+    let mirror = Sphere { center: DVec3::new(0.0, 0.0, -4.0), scale: DVec3::ONE, kr: 1.0, ..scene.spheres[0] };
+    scene.spheres.push(mirror);
+    scene.sphere_names.push("mirror");
+    let own = gpu.tuned.tuning;
+    for in_turn_from in [0.0, 1e9] {
+        gpu.set_tuning(Tuning { in_turn_from, ..own });
+        assert_whole_or_refused(&gpu, &scene);
+    }
+    gpu.set_tuning(own);
 }

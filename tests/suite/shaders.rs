@@ -7,8 +7,8 @@ use trueray::camera::Camera;
 use trueray::effects::{Effect, EffectSet, Effects, Request};
 use trueray::gpu::layout::{double, single};
 use trueray::gpu::{
-    Kernel, Module, Parsed, Places, SEE_SAMPLES, SEE_TILES, SHADE_PATHS, SelfTest, Slots, Specialisation, Storage,
-    Textures, Variant, WALK_PATHS, Walk, echo_layout,
+    Kernel, Module, Places, SEE_SAMPLES, SEE_TILES, SHADE_PATHS, SelfTest, Slots, Specialisation, Storage, Textures,
+    Variant, WALK_PATHS, Walk, echo_layout,
 };
 
 use trueray::precision::Tier;
@@ -85,49 +85,18 @@ fn every_effect_set_is_valid() {
     for kind in kinds() {
         let modules = [None, NonZeroU32::new(3)].map(|refraction| {
             let variant = Variant { refraction, ..kind };
-            (variant, Parsed::new(&Module::render(&variant)).unwrap())
+            let module = Module::render(&variant).parse().unwrap();
+            let info = validate(&module);
+            (variant, module, info)
         });
-        for (index, effects) in EffectSet::every().enumerate() {
-            let (variant, module) = &modules[usize::from(effects.has(Effect::Refraction))];
-            // All flags with all effects, and some with each set.
-            let flags = if effects == EffectSet::ALL { 0..8 } else { index % 8..index % 8 + 1 };
-            for flags in flags {
+        for effects in EffectSet::every() {
+            let (variant, module, info) = &modules[usize::from(effects.has(Effect::Refraction))];
+            for flags in 0..8 {
                 let constants = specialisation(variant, effects, flags).constants();
-                for entry_point in entry_points(variant) {
-                    validate(&module.specialised(entry_point, &constants).unwrap());
-                }
-            }
-        }
-    }
-}
-
-/// What the constants of a pipeline exclude is not there for drivers to translate.
-#[test]
-fn kernels_have_no_branch_that_is_known() {
-    fn has_known_branch(module: &naga::Module, function: &naga::Function, block: &naga::Block) -> bool {
-        block.iter().any(|statement| match statement {
-            naga::Statement::If { condition, accept, reject } => {
-                let known = matches!(
-                    function.expressions[*condition],
-                    naga::Expression::Literal(_) | naga::Expression::Constant(_) | naga::Expression::Override(_)
-                );
-                known || [accept, reject].into_iter().any(|block| has_known_branch(module, function, block))
-            }
-            naga::Statement::Loop { body, continuing, .. } => {
-                [body, continuing].into_iter().any(|block| has_known_branch(module, function, block))
-            }
-            naga::Statement::Block(block) => has_known_branch(module, function, block),
-            _ => false,
-        })
-    }
-    for variant in kinds() {
-        let module = Parsed::new(&Module::render(&variant)).unwrap();
-        let constants = specialisation(&variant, EffectSet::NONE, 0).constants();
-        for entry_point in entry_points(&variant) {
-            let module = module.specialised(entry_point, &constants).unwrap();
-            let functions = module.functions.iter().map(|(_, function)| function);
-            for function in functions.chain(module.entry_points.iter().map(|entry| &entry.function)) {
-                assert!(!has_known_branch(&module, function, &function.body), "{entry_point}: {:?}", function.name);
+                let constants = constants.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
+                let (specialised, _) =
+                    naga::back::pipeline_constants::process_overrides(module, info, None, &constants).unwrap();
+                validate(&specialised);
             }
         }
     }
@@ -265,7 +234,6 @@ fn an_error_in_the_shader_names_its_file_and_line() {
     module.text = module.text.replace("fn reflection_ray(surface: Surface)", "fn reflection_ray(surface: Surfaze)");
     let error = module.parse().unwrap_err();
     assert!(error.contains(&format!("shaders/reflect.wgsl:{line_in_file}:")), "{error}");
-    assert_eq!(Parsed::new(&module).unwrap_err(), error);
 }
 
 #[test]

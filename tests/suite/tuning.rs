@@ -14,7 +14,7 @@ use trueray::tuning::{Class, KNOBS, Tuning};
 use crate::support::{gpu, scene, scene_files};
 
 /// Each number at its least, and at its greatest; and some in between.
-fn tunings() -> [Tuning; 3] {
+fn tunings() -> [Tuning; 4] {
     let class = Tuning::of(Class::Software);
     let ends = [0, 1].map(|end| {
         let mut tuning = class;
@@ -24,7 +24,8 @@ fn tunings() -> [Tuning; 3] {
         tuning
     });
     let density = Density { grid_cells: 0.3, light_entries: 1.0, ..class.density };
-    [ends[0], ends[1], Tuning { workgroup: 48, density, ..class }]
+    let in_turn = Tuning { paths: 7, in_turn_from: 0.0, stored_tables: false, ..class };
+    [ends[0], ends[1], Tuning { workgroup: 48, density, ..class }, in_turn]
 }
 
 fn render(gpu: &Gpu, tier: Tier, scene: &Scene, settings: &Settings) -> Vec<u8> {
