@@ -1,5 +1,6 @@
 //! Finding and opening a Vulkan device.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::str::FromStr;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -11,6 +12,7 @@ use super::kernel_cache::KernelCache;
 use super::pipeline::{MAX_TEXTURES, Specialisation, Stages, compile};
 use super::selftest::SelfTest;
 use super::shader::{Kernel, Module, Textures};
+use super::spirv::Parsed;
 use super::tuned::DeviceTuning;
 use crate::precision::Tier;
 use crate::tuning::Tuning;
@@ -190,7 +192,10 @@ impl Gpu {
 
     fn open_adapter(info: DeviceInfo, adapter: &wgpu::Adapter) -> Result<Self, Error> {
         let shares_memory = matches!(info.kind, "software" | "integrated");
-        let mut features = wgpu::Features::SHADER_F64 | wgpu::Features::SHADER_INT64 | wgpu::Features::TIMESTAMP_QUERY;
+        let mut features = wgpu::Features::SHADER_F64
+            | wgpu::Features::SHADER_INT64
+            | wgpu::Features::TIMESTAMP_QUERY
+            | wgpu::Features::PASSTHROUGH_SHADERS;
         let keeps_kernels = KernelCache::is_wanted(info.kind);
         if keeps_kernels {
             features |= wgpu::Features::PIPELINE_CACHE;
@@ -199,6 +204,9 @@ impl Gpu {
             features |= wgpu::Features::MAPPABLE_PRIMARY_BUFFERS;
         }
         let features = features & adapter.features();
+        if !features.contains(wgpu::Features::PASSTHROUGH_SHADERS) {
+            return Err(Error::NoDevice(format!("{info} takes no SPIR-V, which alone says how to round")));
+        }
         let request = adapter.request_device(&wgpu::DeviceDescriptor {
             label: None,
             required_features: features,
@@ -315,6 +323,33 @@ impl Gpu {
     }
 
     /// Hands the composed text to the driver.
+    /// The module of one kernel of a picture.
+    pub(super) fn kernel_module(
+        &self,
+        module: &Parsed,
+        entry_point: &str,
+        constants: &[(&str, f64)],
+        bindings: &[u32],
+    ) -> Result<wgpu::ShaderModule, Error> {
+        let words = module.spirv(entry_point, constants, bindings).map_err(Error::Lost)?;
+        self.checked("reading the shader", || {
+            #[allow(
+                unsafe_code,
+                reason = "naga has validated the module, and its SPIR-V has but some decorations more"
+            )]
+            unsafe {
+                self.device.create_shader_module_passthrough(wgpu::ShaderModuleDescriptorPassthrough {
+                    entry_points: Cow::Owned(vec![wgpu::PassthroughShaderEntryPoint {
+                        name: entry_point.into(),
+                        workgroup_size: (1, 1, 1),
+                    }]),
+                    spirv: Some(words.into()),
+                    ..Default::default()
+                })
+            }
+        })
+    }
+
     pub(super) fn shader_module(&self, module: &Module) -> Result<wgpu::ShaderModule, Error> {
         let descriptor =
             wgpu::ShaderModuleDescriptor { label: None, source: wgpu::ShaderSource::Wgsl(module.text.as_str().into()) };

@@ -6,6 +6,7 @@ use super::device::Gpu;
 use super::error::Error;
 use super::kernel_cache::KernelCache;
 use super::shader::{Kernel, Module, Places, Slots, Storage, Textures, Variant, Walk};
+use super::spirv::Parsed;
 use super::upload::texel_format;
 use crate::accel::Acceleration;
 use crate::effects::{Effect, EffectSet, Effects};
@@ -230,7 +231,8 @@ pub(super) struct Stages {
 /// Compiles the kernels of a picture.
 pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stages, Error> {
     let constants = specialisation.constants();
-    let module = gpu.shader_module(&specialisation.module())?;
+    let parsed = |module: &Module| Parsed::new(module).map_err(Error::Lost);
+    let module = parsed(&specialisation.module())?;
     let Storage::Tables(textures) = specialisation.storage else {
         return Err(Error::Lost("only scenes in tables are rendered".into()));
     };
@@ -254,13 +256,13 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
     let kernel =
         |entry_point, own: &[(u32, Access)]| stage(gpu, &module, entry_point, &constants, &[&common[..], own].concat());
     let between = || {
-        let module = gpu.shader_module(&Module::between_stages())?;
+        let module = parsed(&Module::between_stages())?;
         let mut group = vec![("GROUP", f64::from(specialisation.workgroup))];
         group.extend(constants.iter().filter(|(name, _)| *name == "PATHS"));
         stage(gpu, &module, "begin_bounce", &group, &[(12, ReadWrite), (16, ReadWrite)])
     };
     let resolve = || {
-        let module = gpu.shader_module(&Module::resolve(specialisation.kernel))?;
+        let module = parsed(&Module::resolve(specialisation.kernel))?;
         let constants = [("SAMPLES", f64::from(specialisation.samples))];
         stage(gpu, &module, "resolve", &constants, &[(0, Uniform), (7, Read), (15, ReadWrite)])
     };
@@ -292,7 +294,7 @@ fn joined<T>(thread: std::thread::ScopedJoinHandle<Result<T, Error>>) -> Result<
 
 fn stage(
     gpu: &Gpu,
-    module: &wgpu::ShaderModule,
+    module: &Parsed,
     entry_point: &str,
     constants: &[(&str, f64)],
     bindings: &[(u32, Access)],
@@ -323,6 +325,9 @@ fn stage(
         count: None,
     };
     let entries: Vec<_> = bindings.iter().map(entry).collect();
+    let mut bindings: Vec<_> = bindings.iter().map(|(binding, _)| *binding).collect();
+    bindings.sort_unstable();
+    let module = gpu.kernel_module(module, entry_point, constants, &bindings)?;
     gpu.checked("compiling the kernels", || {
         let descriptor = wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries };
         let layout = gpu.device.create_bind_group_layout(&descriptor);
@@ -334,14 +339,11 @@ fn stage(
         let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(entry_point),
             layout: Some(&pipeline_layout),
-            module,
+            module: &module,
             entry_point: Some(entry_point),
-            compilation_options: wgpu::PipelineCompilationOptions {
-                constants,
-                zero_initialize_workgroup_memory: false,
-            },
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
             cache: gpu.kernel_cache.as_ref().map(KernelCache::handle),
         });
-        Stage { pipeline, layout, bindings: bindings.iter().map(|(binding, _)| *binding).collect() }
+        Stage { pipeline, layout, bindings }
     })
 }

@@ -7,8 +7,8 @@ use trueray::camera::Camera;
 use trueray::effects::{Effect, EffectSet, Effects, Request};
 use trueray::gpu::layout::{double, single};
 use trueray::gpu::{
-    Kernel, Module, Places, SEE_SAMPLES, SEE_TILES, SHADE_PATHS, SelfTest, Slots, Specialisation, Storage, Textures,
-    Variant, WALK_PATHS, Walk, echo_layout,
+    Kernel, Module, Parsed, Places, SEE_SAMPLES, SEE_TILES, SHADE_PATHS, SelfTest, Slots, Specialisation, Storage,
+    Textures, Variant, WALK_PATHS, Walk, echo_layout,
 };
 
 use trueray::precision::Tier;
@@ -85,19 +85,81 @@ fn every_effect_set_is_valid() {
     for kind in kinds() {
         let modules = [None, NonZeroU32::new(3)].map(|refraction| {
             let variant = Variant { refraction, ..kind };
-            let module = Module::render(&variant).parse().unwrap();
-            let info = validate(&module);
-            (variant, module, info)
+            (variant, Parsed::new(&Module::render(&variant)).unwrap())
         });
-        for effects in EffectSet::every() {
-            let (variant, module, info) = &modules[usize::from(effects.has(Effect::Refraction))];
-            for flags in 0..8 {
+        for (index, effects) in EffectSet::every().enumerate() {
+            let (variant, module) = &modules[usize::from(effects.has(Effect::Refraction))];
+            // All flags with all effects, and some with each set.
+            let flags = if effects == EffectSet::ALL { 0..8 } else { index % 8..index % 8 + 1 };
+            for flags in flags {
                 let constants = specialisation(variant, effects, flags).constants();
-                let constants = constants.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
-                let (specialised, _) =
-                    naga::back::pipeline_constants::process_overrides(module, info, None, &constants).unwrap();
-                validate(&specialised);
+                for entry_point in entry_points(variant) {
+                    validate(&module.specialised(entry_point, &constants).unwrap());
+                }
             }
+        }
+    }
+}
+
+/// What the constants of a pipeline exclude is not there for drivers to translate.
+#[test]
+fn kernels_have_no_branch_that_is_known() {
+    fn has_known_branch(function: &naga::Function, block: &naga::Block) -> bool {
+        block.iter().any(|statement| match statement {
+            naga::Statement::If { condition, accept, reject } => {
+                let known = matches!(
+                    function.expressions[*condition],
+                    naga::Expression::Literal(_) | naga::Expression::Constant(_) | naga::Expression::Override(_)
+                );
+                known || [accept, reject].into_iter().any(|block| has_known_branch(function, block))
+            }
+            naga::Statement::Loop { body, continuing, .. } => {
+                [body, continuing].into_iter().any(|block| has_known_branch(function, block))
+            }
+            naga::Statement::Block(block) => has_known_branch(function, block),
+            _ => false,
+        })
+    }
+    for variant in kinds() {
+        let module = Parsed::new(&Module::render(&variant)).unwrap();
+        let constants = specialisation(&variant, EffectSet::NONE, 0).constants();
+        for entry_point in entry_points(&variant) {
+            let module = module.specialised(entry_point, &constants).unwrap();
+            let functions = module.functions.iter().map(|(_, function)| function);
+            for function in functions.chain(module.entry_points.iter().map(|entry| &entry.function)) {
+                assert!(!has_known_branch(function, &function.body), "{entry_point}: {:?}", function.name);
+            }
+        }
+    }
+}
+
+/// Each instruction of a SPIR-V module: its number and its words.
+fn instructions(words: &[u32]) -> impl Iterator<Item = (u32, &[u32])> {
+    let mut rest = &words[5..];
+    std::iter::from_fn(move || {
+        let first = *rest.first()?;
+        let (instruction, others) = rest.split_at((first >> 16) as usize);
+        rest = others;
+        Some((first & 0xffff, instruction))
+    })
+}
+
+/// No driver may round otherwise than it is written: one that fuses or reorders does so differently from kernel to kernel.
+#[test]
+fn no_operation_may_be_contracted() {
+    for variant in kinds() {
+        let module = Parsed::new(&Module::render(&variant)).unwrap();
+        let constants = specialisation(&variant, EffectSet::ALL, 7).constants();
+        let bindings: Vec<u32> = (0..32).collect();
+        for entry_point in entry_points(&variant) {
+            let words = module.spirv(entry_point, &constants, &bindings).unwrap();
+            let decorated = |(number, words): (u32, &[u32])| (number == 71 && words[2] == 42).then(|| words[1]);
+            let exact: std::collections::HashSet<u32> = instructions(&words).filter_map(decorated).collect();
+            // OpFAdd, OpFSub, OpFMul, OpFDiv, OpVectorTimesScalar, OpDot.
+            let arithmetic = instructions(&words).filter(|(number, _)| [129, 131, 133, 136, 142, 148].contains(number));
+            let results: Vec<u32> = arithmetic.map(|(_, words)| words[2]).collect();
+            assert!(results.len() > 20, "{entry_point}");
+            assert!(results.iter().all(|result| exact.contains(result)), "{entry_point}");
         }
     }
 }
@@ -234,6 +296,7 @@ fn an_error_in_the_shader_names_its_file_and_line() {
     module.text = module.text.replace("fn reflection_ray(surface: Surface)", "fn reflection_ray(surface: Surfaze)");
     let error = module.parse().unwrap_err();
     assert!(error.contains(&format!("shaders/reflect.wgsl:{line_in_file}:")), "{error}");
+    assert_eq!(Parsed::new(&module).unwrap_err(), error);
 }
 
 #[test]
