@@ -14,7 +14,7 @@ use naga::{Block, Expression, Handle, Literal, ResourceBinding, ShaderStage, Sta
 
 use super::shader::Module;
 
-/// A module that is parsed and valid.
+/// A module that is parsed.
 #[derive(Debug)]
 pub struct Parsed {
     module: naga::Module,
@@ -22,10 +22,11 @@ pub struct Parsed {
 }
 
 impl Parsed {
-    /// Parses and validates `module`; an error names the file and line.
+    /// Parses `module`; an error names the file and line.
     pub fn new(module: &Module) -> Result<Self, String> {
         let module = module.parse()?;
-        let info = validated(&module)?;
+        // What has constants is validated with them.
+        let info = validated(&module, ValidationFlags::empty())?;
         Ok(Self { module, info })
     }
 
@@ -60,7 +61,7 @@ impl Parsed {
     /// The SPIR-V of this kernel. `bindings` are those of its layout, in ascending order.
     pub fn spirv(&self, entry_point: &str, constants: &[(&str, f64)], bindings: &[u32]) -> Result<Vec<u32>, String> {
         let module = self.specialised(entry_point, constants)?;
-        let info = validated(&module)?;
+        let info = validated(&module, ValidationFlags::all())?;
         // wgpu numbers the bindings of a layout anew.
         let places = bindings.iter().zip(0..).map(|(&binding, place)| {
             let place = spv::BindingInfo { descriptor_set: 0, binding: place, binding_array_size: None };
@@ -90,9 +91,9 @@ impl Parsed {
     }
 }
 
-fn validated(module: &naga::Module) -> Result<ModuleInfo, String> {
+fn validated(module: &naga::Module, flags: ValidationFlags) -> Result<ModuleInfo, String> {
     let capabilities = Capabilities::FLOAT64 | Capabilities::SHADER_INT64;
-    Validator::new(ValidationFlags::all(), capabilities).validate(module).map_err(|error| error.to_string())
+    Validator::new(flags, capabilities).validate(module).map_err(|error| error.to_string())
 }
 
 /// The statements without the branches of conditions that are known.
