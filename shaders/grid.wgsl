@@ -76,7 +76,7 @@ fn take_turn(walk: ptr<function, Walk>, nearest: ptr<function, Hit>, ray: Ray, o
         (*walk).cell += select(select(strides.z, strides.y, is_y), strides.x, is_x);
         // Where the walk is over, the cell may be none of the grid.
         let cell = select(params.grid_first, u32((*walk).cell), (*walk).goes_on);
-        (*walk).list = cell_at(cell);
+        (*walk).list = select(vec2<u32>(), cell_at(cell), vec2<bool>((*walk).goes_on));
     }
 }
 
@@ -90,6 +90,7 @@ fn nearest_in_grid(before: Hit, ray: Ray, own: Own, range: Range) -> Hit {
             break;
         }
     }
-    is_cut |= walk.goes_on;
+    // Not by the condition of the loop alone, which compilers may take for granted behind it.
+    is_cut |= walk.goes_on | (walk.list.x < walk.list.y);
     return nearest;
 }

@@ -134,7 +134,7 @@ fn any_hit(ray: Ray, own: Own, light: u32, is_asked: bool) -> bool {
             let body = body_of(entry_at(at));
             at++;
             let is_over = is_last | blocked | (at == list.y);
-            is_last = is_behind(body, position, distance);
+            is_last |= is_behind(body, position, distance);
             blocked |= blocks(ray, body, own, t_min);
             if is_over {
                 break;

@@ -12,7 +12,7 @@ struct Stage {
 
 // As in effects.wgsl.
 override GROUP: u32 = 64u;
-// As in walk_in_turn.wgsl.
+// As in walk_in_turn.wgsl; 1 where an invocation has one path.
 override PATHS: u32 = 1u;
 
 @compute @workgroup_size(1)

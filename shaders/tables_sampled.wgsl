@@ -1,4 +1,4 @@
-// Tables as sampled textures: every device has enough of them, and hardware has a cache for them.
+// Tables as sampled textures: for devices with few storage textures.
 
 alias Table = texture_2d<u32>;
 alias PairTable = texture_2d<u32>;

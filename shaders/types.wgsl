@@ -66,5 +66,5 @@ struct Light {
 // Spheres, lights, lists and the window are bound in many.wgsl, or in ranges.wgsl.
 @group(0) @binding(0) var<uniform> given_params: Params;
 
-// Set by each entry point: software devices load what is uniform once for all lanes, but lane by lane in a loop.
+// Set by each entry point that reads it: software devices load what is uniform once for all lanes, but lane by lane in a loop.
 var<private> params: Params;

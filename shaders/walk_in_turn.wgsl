@@ -12,12 +12,13 @@ const HIT_INSIDE: u32 = 1u << 30u;
 const HIT_CUT: u32 = 1u << 29u;
 
 // Paths of an invocation.
-override PATHS: u32 = 32u;
+override PATHS: u32;
 
 // Turns between two looks whether a lane is free for its next path.
 const TURNS: u32 = 16u;
-// What these, the look itself and the large spheres add at the most to the turns of all loops, of which software devices end an
-// invocation's after 65,535: see is_cut.
+// What these, the look itself and the large spheres, two a turn and MAX_LARGE of src/accel/grid.rs at the most, add to the turns
+// of all loops, of which software devices end an invocation's after 65,535: see is_cut. Where that is not enough for all of its
+// paths, the host has each walked by an invocation of its own.
 const TURNS_OF_LOOK: u32 = 32u;
 const MAX_TURNS: u32 = 60000u;
 

@@ -1,8 +1,8 @@
 //! Ray tracer for scenes of spheres and ellipsoids: a WGSL compute shader on any Vulkan device, checked against a CPU
 //! reference.
 //!
-//! The data walk: scene text → [`scene::Scene`] → [`effects::Effects`] → lists of spheres ([`accel`]) → packed buffers →
-//! composed WGSL and constants → stages of dispatches → rows of pixels → file. `cpu` and `gpu` never see each other; both
+//! The data walk: scene text → [`scene::Scene`] → [`effects::Effects`] → lists of spheres ([`accel`]) → packed tables →
+//! composed WGSL and constants → SPIR-V of each kernel → stages of dispatches → rows of pixels → file. `cpu` and `gpu` never see each other; both
 //! read [`scene`], [`effects`], [`camera`], [`geometry`], [`accel`] and [`sampling`].
 
 pub mod accel;

@@ -322,7 +322,6 @@ impl Gpu {
             .map_err(|error| Error::Lost(format!("{} stopped answering: {error}", self.info)))
     }
 
-    /// Hands the composed text to the driver.
     /// The module of one kernel of a picture.
     pub(super) fn kernel_module(
         &self,
@@ -341,6 +340,7 @@ impl Gpu {
                 self.device.create_shader_module_passthrough(wgpu::ShaderModuleDescriptorPassthrough {
                     entry_points: Cow::Owned(vec![wgpu::PassthroughShaderEntryPoint {
                         name: entry_point.into(),
+                        // Read for Metal alone.
                         workgroup_size: (1, 1, 1),
                     }]),
                     spirv: Some(words.into()),
@@ -350,6 +350,7 @@ impl Gpu {
         })
     }
 
+    /// Hands the composed text to the driver.
     pub(super) fn shader_module(&self, module: &Module) -> Result<wgpu::ShaderModule, Error> {
         let descriptor =
             wgpu::ShaderModuleDescriptor { label: None, source: wgpu::ShaderSource::Wgsl(module.text.as_str().into()) };

@@ -1,4 +1,4 @@
-//! From the scene to the bytes of the buffers.
+//! From the scene to the bytes of its tables.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -107,7 +107,7 @@ impl<'a> Contents<'a> {
     }
 }
 
-/// The contents of the buffers but the lists.
+/// The contents of the tables but the lists.
 pub(super) struct Packed<'a> {
     pub(super) params: Contents<'a>,
     /// The first halves of the shapes and the second, one of each per sphere.
@@ -168,7 +168,6 @@ fn pack<'a, L: Layout + 'a>(
     let window_low = with_low.then(|| window().map(residual::<L>)).into_iter().flatten();
     let window: Vec<DVec3> = window().chain(window_low).collect();
     let bases = list_bases(accel);
-    let entries_before_grid = accel.grid.as_ref().map_or(0, |_| entry_bases(accel).last().unwrap_or_default());
     let params = ParamValues {
         background: scene.background,
         ambient: scene.ambient,
@@ -177,10 +176,7 @@ fn pack<'a, L: Layout + 'a>(
         reflection_t_min: settings.secondary.reflection_t_min(),
         quantize_bias: settings.quantize.bias(),
         window_rows: columns,
-        lists: ListValues {
-            grid_entries: entries_before_grid,
-            ..list_values(accel, accel.grid.as_ref().map_or(0, |_| bases[bases.len() - 1]))
-        },
+        lists: list_values(accel, &bases),
         window_low: columns + rows,
         light_count: scene.lights.len() as u32,
         max_depth: effects.depth,
@@ -245,19 +241,26 @@ pub(super) fn list_contents(accel: &Acceleration) -> [Contents<'_>; 2] {
     [Contents::joined(cells.collect()), Contents::joined(entries.collect())]
 }
 
-/// Where the shader finds the lists.
-fn list_values(accel: &Acceleration, grid_first: u32) -> ListValues {
+/// Where the shader finds the lists, of which the cells begin at these places.
+fn list_values(accel: &Acceleration, cell_bases: &[u32]) -> ListValues {
     let screen = ListValues {
         // From pixels to tiles with lists.
         screen_shift: TILE.trailing_zeros() + accel.screen.shift,
         screen_across: accel.screen.across,
         light_slack: accel.lights.slack,
-        grid_first,
         ..ListValues::default()
     };
     match &accel.grid {
         None => screen,
-        Some(grid) => ListValues { grid_low: grid.low, grid_per_unit: grid.per_unit, grid_cells: grid.cells, ..screen },
+        // The lists of the grid are the last.
+        Some(grid) => ListValues {
+            grid_low: grid.low,
+            grid_per_unit: grid.per_unit,
+            grid_cells: grid.cells,
+            grid_first: cell_bases.last().copied().unwrap_or_default(),
+            grid_entries: entry_bases(accel).last().unwrap_or_default(),
+            ..screen
+        },
     }
 }
 

@@ -15,7 +15,7 @@ use crate::settings::{Secondary, Settings, Specular};
 use crate::tuning::Tuning;
 
 /// Textures that a kernel reads and writes at the most, whatever it is specialised for.
-pub(super) const MAX_TEXTURES: u32 = 16;
+pub(super) const MAX_TEXTURES: u32 = 13;
 
 /// What a pipeline is specialised for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -76,7 +76,7 @@ impl Specialisation {
             large if large == grid.lists.entries.len() => Places::Large,
             _ => Places::Both,
         };
-        let walk = match NonZeroU32::new(tuning.paths) {
+        let walk = match NonZeroU32::new(tuning.paths).filter(|_| self.has_paths()) {
             Some(paths) if places != Places::Large && grid.lists.entries.len() as f64 >= tuning.in_turn_from => {
                 Walk::InTurn(paths)
             }
@@ -85,9 +85,10 @@ impl Specialisation {
         Self { places, walk, ..self }
     }
 
-    /// Whether walks read copies of the spheres in the order of the grid's lists.
-    pub(super) fn copies(&self) -> bool {
-        self.walk != Walk::AtOnce && self.has_paths() && !self.kernel.carries_low()
+    /// What decides the text of its kernels.
+    pub(super) fn variant(&self) -> Variant {
+        let Self { kernel, storage, places, refraction, slots, walk, .. } = *self;
+        Variant { kernel, storage, places, samples: self.samples > 1, refraction, slots, walk }
     }
 
     /// Whether the intersection reads second halves of shapes.
@@ -143,8 +144,7 @@ impl Specialisation {
 
     /// The module that renders.
     pub fn module(&self) -> Module {
-        let Self { kernel, storage, places, refraction, slots, walk, .. } = *self;
-        Module::render(&Variant { kernel, storage, places, samples: self.samples > 1, refraction, slots, walk })
+        Module::render(&self.variant())
     }
 }
 
@@ -266,7 +266,8 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
         let constants = [("SAMPLES", f64::from(specialisation.samples))];
         stage(gpu, &module, "resolve", &constants, &[(0, Uniform), (7, Read), (15, ReadWrite)])
     };
-    let copies: &[(u32, Access)] = if specialisation.copies() { &[(24, vectors), (25, vectors)] } else { &[] };
+    let copies: &[(u32, Access)] =
+        if specialisation.variant().copies() { &[(24, vectors), (25, vectors)] } else { &[] };
     // A driver compiles a kernel on the thread that asks for it: side by side. The largest one goes here, since allocating is
     // cheapest on the main thread.
     std::thread::scope(|scope| {
@@ -324,6 +325,8 @@ fn stage(
         },
         count: None,
     };
+    let is_texture = |(_, access): &&(u32, Access)| matches!(access, Access::Table(..) | Texels(_));
+    debug_assert!(bindings.iter().filter(is_texture).count() <= MAX_TEXTURES as usize);
     let entries: Vec<_> = bindings.iter().map(entry).collect();
     let mut bindings: Vec<_> = bindings.iter().map(|(binding, _)| *binding).collect();
     bindings.sort_unstable();

@@ -15,7 +15,7 @@ use super::pack::{Packed, list_contents};
 use super::pipeline::{Bounce, Resource, Specialisation, Stage, Stages};
 use super::readable::Readable;
 use super::shader::{Kernel, Slots, Walk};
-use super::tables::{are_too_large, check_fits, copy_resources, list_resources, scene_resources};
+use super::tables::{are_too_large, check_fits, copies_fit, copy_resources, list_resources, scene_resources};
 use super::timestamps::Timestamps;
 use super::upload::empty_texels;
 use crate::accel::{Acceleration, Cover, Density, Rounding};
@@ -26,7 +26,7 @@ use crate::precision::Tier;
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::tiles::TILE;
-use place::place_tiles;
+use place::{Statuses, place_tiles};
 
 /// Pixels of a tile.
 const TILE_PIXELS: usize = (TILE * TILE) as usize;
@@ -93,7 +93,7 @@ struct Work {
     see_group: wgpu::BindGroup,
     /// For what goes before a bounce.
     begin_group: Option<wgpu::BindGroup>,
-    /// For a bounce, by whether another one follows, and from which of the two buffers of paths to the other.
+    /// For a bounce, by whether another one follows, and from which of the two textures of paths to the other.
     walk_groups: Option<[[wgpu::BindGroup; 2]; 2]>,
     /// Likewise for its shading.
     shade_groups: Option<[[wgpu::BindGroup; 2]; 2]>,
@@ -115,6 +115,12 @@ enum Count {
     /// As many as the device has found, at this offset.
     Found(u64),
 }
+
+/// The counts of workgroups in `shaders/stage.wgsl`: their bytes, and where those of the kernel with one path an invocation and
+/// of the one with several begin.
+const WORKGROUPS_SIZE: u64 = 24;
+const ONE_PATH: u64 = 0;
+const SEVERAL_PATHS: u64 = 12;
 
 /// Bytes of the shader's `Stage`.
 const STAGE_SIZE: u64 = 8;
@@ -146,8 +152,11 @@ impl<'a> GpuRenderer<'a> {
         if tuning.density != Density::DEFAULT && are_too_large(gpu, &list_contents(&accel)) {
             accel = lists(&Density::DEFAULT);
         }
-        let specialisation = specialisation.with_lists(&accel, tuning);
+        let mut specialisation = specialisation.with_lists(&accel, tuning);
         let packed = Packed::new(scene, settings, effects, kernel, &accel);
+        if !copies_fit(gpu, &packed, &accel) {
+            specialisation.walk = Walk::AtOnce;
+        }
         let list_tables = list_contents(&accel);
         check_fits(gpu, &packed, &list_tables)?;
         let cover = accel.screen.cover();
@@ -229,7 +238,11 @@ impl<'a> GpuRenderer<'a> {
             };
             let (now, later) = rest.split_at(rest.len().min(work.capacity.min(self.tiles_per_dispatch) as usize));
             let took = self.dispatch(&work, now)?;
-            not_finite += self.read_back(&work, now, first, rgb)?;
+            let statuses = self.read_back(&work, now, first, rgb)?;
+            if self.walks_at_once_instead(statuses, now.len()) {
+                continue;
+            }
+            not_finite += statuses.checked(self.gpu)?;
             self.add_rays(&work, now.len() * TILE_PIXELS)?;
             self.work = Some(work);
             self.set_pace(now.len(), took);
@@ -336,10 +349,10 @@ impl<'a> GpuRenderer<'a> {
                     run(begin, begin_group, Count::Known(1));
                     match (shade, &work.shade_groups) {
                         (Some(shade), Some(shade_groups)) => {
-                            run(walk, &walk_groups[has_next][from], Count::Found(12));
-                            run(shade, &shade_groups[has_next][from], Count::Found(0));
+                            run(walk, &walk_groups[has_next][from], Count::Found(SEVERAL_PATHS));
+                            run(shade, &shade_groups[has_next][from], Count::Found(ONE_PATH));
                         }
-                        _ => run(walk, &walk_groups[has_next][from], Count::Found(0)),
+                        _ => run(walk, &walk_groups[has_next][from], Count::Found(ONE_PATH)),
                     }
                 }
             }
@@ -355,13 +368,26 @@ impl<'a> GpuRenderer<'a> {
     }
 
     /// Puts the pixels of `tiles` into `rgb`, whose first row is `first`.
-    fn read_back(&mut self, work: &Work, tiles: &[[u32; 2]], first: u32, rgb: &mut [u8]) -> Result<u64, Error> {
+    fn read_back(&mut self, work: &Work, tiles: &[[u32; 2]], first: u32, rgb: &mut [u8]) -> Result<Statuses, Error> {
         let start = Instant::now();
         let width = self.width;
         let place = |pixels: &[u32]| place_tiles(pixels, tiles, first, width, rgb);
         let statuses = work.pixels.read(self.gpu, tiles.len() * TILE_PIXELS, place)?;
         self.times.read_back += start.elapsed();
-        statuses.checked(self.gpu)
+        Ok(statuses)
+    }
+
+    /// Whether the dispatch of so many places has to be repeated, since paths that share an invocation, and so the turns of its
+    /// loops, need more of them than it has: from then on each has its own.
+    fn walks_at_once_instead(&mut self, statuses: Statuses, places: usize) -> bool {
+        let specialisation = &mut self.inputs.specialisation;
+        let repeats = specialisation.walk != Walk::AtOnce && statuses.may_be_cut(self.samples);
+        if repeats {
+            specialisation.walk = Walk::AtOnce;
+            self.work = None;
+            self.times.tiles -= u64::from(self.workgroups(places));
+        }
+        repeats
     }
 
     /// Adds up the ray counts of the last dispatch of so many pixels.
@@ -406,14 +432,14 @@ impl Work {
         let paths = specialisation.path_size() * if specialisation.has_paths() { slots } else { 1 };
         let color_size = if specialisation.kernel.is_double() { 32 } else { 16 };
         let paths = [0, 1].map(|_| empty_texels(gpu, paths, 4));
-        let in_turn = specialisation.has_paths() && specialisation.walk != Walk::AtOnce;
+        let in_turn = specialisation.walk != Walk::AtOnce;
         let hits = empty_texels(gpu, if in_turn { 4 * slots } else { 4 }, 1);
         let tiles = match specialisation.slots {
             Slots::Tiles => empty(u64::from(MAX_DISPATCH_TILES) * 4, wgpu::BufferUsages::UNIFORM | copied),
             Slots::List => empty(pixel_count * 8, storage | copied),
         };
         let stage = empty(STAGE_SIZE, storage | copied);
-        let workgroups = empty(24, storage | wgpu::BufferUsages::INDIRECT);
+        let workgroups = empty(WORKGROUPS_SIZE, storage | wgpu::BufferUsages::INDIRECT);
         let colors = stages.resolve.as_ref().map(|_| empty(slots * color_size, storage));
         let results = colors.as_ref().unwrap_or(&pixels.buffer);
         let mut all = resources.to_vec();

@@ -135,6 +135,13 @@ pub struct Variant {
     pub walk: Walk,
 }
 
+impl Variant {
+    /// Whether walks read copies of the spheres in the order of the grid's lists.
+    pub fn copies(&self) -> bool {
+        self.refraction.is_none() && self.walk != Walk::AtOnce && !self.kernel.carries_low()
+    }
+}
+
 /// The scalar of the kernel and what the host packs.
 fn data_parts(kernel: Kernel, storage: Storage) -> Vec<Part> {
     let barrier = if kernel == Kernel::NoBarrier { part!("barrier_none.wgsl") } else { part!("barrier.wgsl") };
@@ -199,8 +206,7 @@ impl Module {
     pub fn render(variant: &Variant) -> Self {
         let Variant { kernel, storage, places, samples, refraction, slots, walk } = *variant;
         let mut parts = intersection_parts(kernel, storage);
-        let copies = refraction.is_none() && walk != Walk::AtOnce && !kernel.carries_low();
-        let bodies = if copies { part!("bodies_copied.wgsl") } else { part!("bodies_shared.wgsl") };
+        let bodies = if variant.copies() { part!("bodies_copied.wgsl") } else { part!("bodies_shared.wgsl") };
         parts.extend(match places {
             Places::Grid => vec![bodies, part!("grid.wgsl"), part!("secondary_grid.wgsl")],
             Places::Large => vec![part!("secondary_large.wgsl")],
@@ -301,7 +307,7 @@ impl Module {
         ("the end of the joined shaders".into(), rest)
     }
 
-    /// Parses and validates the module with naga; an error names the file and line.
+    /// Parses the module with naga; an error names the file and line.
     pub fn parse(&self) -> Result<naga::Module, String> {
         naga::front::wgsl::parse_str(&self.text).map_err(|error| {
             let mut message = error.message().to_string();

@@ -131,12 +131,13 @@ const HEADER: usize = 5;
 const OP_EXT_INST: u32 = 12;
 const OP_TYPES: std::ops::RangeInclusive<u32> = 19..=39;
 const OP_DECORATE: u32 = 71;
-const OP_FLOAT_ARITHMETIC: [u32; 8] = [
+const OP_FLOAT_ARITHMETIC: [u32; 9] = [
     127, // OpFNegate
     129, // OpFAdd
     131, // OpFSub
     133, // OpFMul
     136, // OpFDiv
+    140, // OpFRem
     142, // OpVectorTimesScalar
     148, // OpDot
     OP_EXT_INST,

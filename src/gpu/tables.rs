@@ -15,6 +15,12 @@ pub(super) fn list_resources(gpu: &Gpu, [cells, entries]: &[Contents; 2]) -> Res
     ])
 }
 
+/// Whether the device has room for the shapes in the order of the grid's lists.
+pub(super) fn copies_fit(gpu: &Gpu, packed: &Packed, accel: &Acceleration) -> bool {
+    let entries = accel.grid.as_ref().map_or(0, |grid| grid.lists.entries.len());
+    (entries * packed.shapes[0].element_size()) as u64 <= max_texels(gpu, 16)
+}
+
 /// The textures of the shapes in the order of the grid's lists, by binding, where kernels read them so.
 pub(super) fn copy_resources(
     gpu: &Gpu,
@@ -22,7 +28,7 @@ pub(super) fn copy_resources(
     accel: &Acceleration,
     specialisation: &Specialisation,
 ) -> Result<Vec<(u32, Resource)>, Error> {
-    let Some(grid) = accel.grid.as_ref().filter(|_| specialisation.copies()) else { return Ok(Vec::new()) };
+    let Some(grid) = accel.grid.as_ref().filter(|_| specialisation.variant().copies()) else { return Ok(Vec::new()) };
     let texels = |half: usize, entries: &[u32]| {
         upload_texels(gpu, &Contents::gathered(&packed.shapes[half], entries), 4).map(Resource::Texels)
     };

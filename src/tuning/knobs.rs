@@ -1,6 +1,6 @@
 //! The numbers of a tuning one by one, for whoever checks or varies them.
 
-use super::Tuning;
+use super::{NEVER, Tuning};
 
 /// One number of a tuning, for whoever varies it.
 #[derive(Debug)]
@@ -27,18 +27,18 @@ pub static KNOBS: [Knob; 10] = [
         set: |tuning, value| tuning.workgroup = value as u32,
     },
     Knob {
+        name: "in_turn_from",
+        limits: [0.0, NEVER],
+        candidates: &[1e3, 1e4, 1e5, NEVER],
+        get: |tuning| tuning.in_turn_from,
+        set: |tuning, value| tuning.in_turn_from = value,
+    },
+    Knob {
         name: "paths",
         limits: [1.0, 64.0],
         candidates: &[8.0, 16.0, 32.0, 64.0],
         get: |tuning| f64::from(tuning.paths),
         set: |tuning, value| tuning.paths = value as u32,
-    },
-    Knob {
-        name: "in_turn_from",
-        limits: [0.0, 1e9],
-        candidates: &[1e3, 1e4, 1e5, 1e9],
-        get: |tuning| tuning.in_turn_from,
-        set: |tuning, value| tuning.in_turn_from = value,
     },
     Knob {
         name: "stored_tables",

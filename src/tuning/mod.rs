@@ -88,6 +88,7 @@ impl Tuning {
         // Its invocations do not wait for each other in the same way, and it wants more of them: measured on a discrete one, where
         // 32 paths an invocation take five to eight times as long.
         let hardware = Self { dispatch_ms: INTERACTIVE_MS, in_turn_from: NEVER, ..software };
+        // Storage textures and sampled ones take the same time there, too.
         match class {
             Class::Software => software,
             Class::Integrated => Self { first_dispatch_tests: 16e6, ..hardware },

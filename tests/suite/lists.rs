@@ -154,15 +154,15 @@ fn the_device_leaves_out_nothing_at_any_tier() {
     }
 }
 
-/// Some 80,000 spheres around one point, each of which hides all before it, so that only who comes to the end sees the last one.
-fn coincident(center: DVec3) -> Scene {
+/// So many discs around one point, each of which hides all before it, so that only who comes to the end sees the last one.
+fn coincident(count: u32, center: DVec3, radius: f64) -> Scene {
     let mut scene = scene_of("AMBIENT 1 1 1");
     (scene.width, scene.height) = (8, 8);
-    scene.spheres = (0..80_000_u32)
+    scene.spheres = (0..count)
         .map(|index| Sphere {
             center,
-            scale: DVec3::new(2.0, 2.0, 1.0 + f64::from(index) * 1e-5),
-            color: DVec3::splat(f64::from(index) / 80_000.0),
+            scale: DVec3::new(radius, radius, 1.0 + f64::from(index) * 1e-5),
+            color: DVec3::splat(f64::from(index) / f64::from(count)),
             ka: 1.0,
             kd: 0.0,
             ks: 0.0,
@@ -196,21 +196,44 @@ fn assert_whole_or_refused(gpu: &Gpu, scene: &Scene) {
 #[test]
 fn a_list_that_is_too_long_for_a_device_is_no_other_picture() {
     let Some(gpu) = crate::support::gpu("a_list_that_is_too_long_for_a_device_is_no_other_picture") else { return };
-    assert_whole_or_refused(&gpu, &coincident(DVec3::new(0.0, 0.0, -5.0)));
+    assert_whole_or_refused(&gpu, &coincident(80_000, DVec3::new(0.0, 0.0, -5.0), 2.0));
 }
 
-/// Likewise behind the eye, where only a mirror shows them.
+/// So many behind the eye, where only a mirror shows them.
+fn mirrored(count: u32) -> Scene {
+    let mut scene = coincident(count, DVec3::new(0.0, 0.0, 60.0), 40.0);
+    let mirror = Sphere { center: DVec3::new(0.0, 0.0, -54.0), scale: DVec3::splat(50.0), kr: 1.0, ..scene.spheres[0] };
+    scene.spheres.push(mirror);
+    scene.sphere_names.push("mirror");
+    scene
+}
+
 #[test]
 fn a_walk_that_is_too_long_for_a_device_is_no_other_picture() {
     let Some(mut gpu) = crate::support::gpu("a_walk_that_is_too_long_for_a_device_is_no_other_picture") else { return };
-    let mut scene = coincident(DVec3::new(0.0, 0.0, 9.0));
-    let mirror = Sphere { center: DVec3::new(0.0, 0.0, -4.0), scale: DVec3::ONE, kr: 1.0, ..scene.spheres[0] };
-    scene.spheres.push(mirror);
-    scene.sphere_names.push("mirror");
+    let scene = mirrored(80_000);
     let own = gpu.tuned.tuning;
     for in_turn_from in [0.0, 1e9] {
         gpu.set_tuning(Tuning { in_turn_from, ..own });
         assert_whole_or_refused(&gpu, &scene);
     }
     gpu.set_tuning(own);
+}
+
+/// Walks that are too long together, but none by itself.
+#[test]
+fn long_walks_in_turn_are_walked_at_once_instead() {
+    let Some(mut gpu) = crate::support::gpu("long_walks_in_turn_are_walked_at_once_instead") else { return };
+    let mut scene = mirrored(6000);
+    (scene.width, scene.height) = (64, 64);
+    let settings = Settings::classic();
+    let own = gpu.tuned.tuning;
+    let pictures = [1e9, 0.0].map(|in_turn_from| {
+        gpu.set_tuning(Tuning { in_turn_from, ..own });
+        device(&gpu, Kernel::Tier(Tier::Fast), &scene, &settings, Rounding::SINGLE)
+    });
+    gpu.set_tuning(own);
+    assert_eq!(first_difference(&pictures[0], &pictures[1], &scene), None);
+    // They are seen at all.
+    assert!(pictures[0].chunks(3).filter(|pixel| pixel.iter().all(|&level| level > 200)).count() > 100);
 }

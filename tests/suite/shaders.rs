@@ -20,24 +20,24 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 /// Every kernel, with each way to find what secondary rays meet, and some of the ways to read tables and to walk paths.
 fn kinds() -> impl Iterator<Item = Variant> {
     let kernels = Tier::ALL.map(Kernel::Tier).into_iter().chain([Kernel::Pairs]);
-    let places = [Places::Grid, Places::Large, Places::Both];
-    let kinds = kernels.flat_map(move |kernel| places.map(|places| (kernel, places)));
+    let in_turn = Walk::InTurn(NonZeroU32::new(5).unwrap());
     let ways = [
-        (Textures::Stored, Walk::AtOnce),
-        (Textures::Sampled, Walk::InTurn(NonZeroU32::new(5).unwrap())),
-        (Textures::Sampled, Walk::AtOnce),
-        (Textures::Stored, Walk::InTurn(NonZeroU32::new(32).unwrap())),
-        (Textures::Stored, Walk::AtOnce),
-    ];
-    kinds.zip(ways.into_iter().cycle()).map(|((kernel, places), (textures, walk))| Variant {
-        kernel,
-        storage: Storage::Tables(textures),
-        places,
-        samples: false,
-        refraction: None,
-        slots: Slots::Tiles,
+        (Places::Grid, Textures::Stored, in_turn),
+        (Places::Grid, Textures::Sampled, Walk::AtOnce),
         // Where no sphere is in the grid, there is nothing to walk through.
-        walk: if places == Places::Large { Walk::AtOnce } else { walk },
+        (Places::Large, Textures::Stored, Walk::AtOnce),
+        (Places::Both, Textures::Sampled, in_turn),
+    ];
+    kernels.flat_map(move |kernel| {
+        ways.map(|(places, textures, walk)| Variant {
+            kernel,
+            storage: Storage::Tables(textures),
+            places,
+            samples: false,
+            refraction: None,
+            slots: Slots::Tiles,
+            walk,
+        })
     })
 }
 
@@ -155,8 +155,9 @@ fn no_operation_may_be_contracted() {
             let words = module.spirv(entry_point, &constants, &bindings).unwrap();
             let decorated = |(number, words): (u32, &[u32])| (number == 71 && words[2] == 42).then(|| words[1]);
             let exact: std::collections::HashSet<u32> = instructions(&words).filter_map(decorated).collect();
-            // OpFAdd, OpFSub, OpFMul, OpFDiv, OpVectorTimesScalar, OpDot.
-            let arithmetic = instructions(&words).filter(|(number, _)| [129, 131, 133, 136, 142, 148].contains(number));
+            // OpFNegate, OpFAdd, OpFSub, OpFMul, OpFDiv, OpFRem, OpVectorTimesScalar, OpDot.
+            let arithmetic =
+                instructions(&words).filter(|(number, _)| [127, 129, 131, 133, 136, 140, 142, 148].contains(number));
             let results: Vec<u32> = arithmetic.map(|(_, words)| words[2]).collect();
             assert!(results.len() > 20, "{entry_point}");
             assert!(results.iter().all(|result| exact.contains(result)), "{entry_point}");

@@ -24,7 +24,7 @@ fn tunings() -> [Tuning; 4] {
         tuning
     });
     let density = Density { grid_cells: 0.3, light_entries: 1.0, ..class.density };
-    let in_turn = Tuning { paths: 7, in_turn_from: 0.0, stored_tables: false, ..class };
+    let in_turn = Tuning { paths: 64, in_turn_from: 0.0, stored_tables: false, ..class };
     [ends[0], ends[1], Tuning { workgroup: 48, density, ..class }, in_turn]
 }
 

@@ -43,7 +43,11 @@ impl GpuRenderer<'_> {
             let most = work.capacity.min(self.tiles_per_dispatch) as usize * TILE_PIXELS;
             let end = list.len().min(start + most);
             let took = self.dispatch(&work, &list[start..end])?;
-            not_finite += self.read_list(&work, &covered[start..end], colors)?;
+            let statuses = self.read_list(&work, &covered[start..end], colors)?;
+            if self.walks_at_once_instead(statuses, end - start) {
+                continue;
+            }
+            not_finite += statuses.checked(self.gpu)?;
             self.add_rays(&work, end - start)?;
             self.work = Some(work);
             self.set_pace((end - start).div_ceil(TILE_PIXELS), took);
@@ -53,7 +57,7 @@ impl GpuRenderer<'_> {
     }
 
     /// Puts the pixels of the last dispatch to their places in `colors`.
-    fn read_list(&mut self, work: &Work, places: &[usize], colors: &mut [[u8; 3]]) -> Result<u64, Error> {
+    fn read_list(&mut self, work: &Work, places: &[usize], colors: &mut [[u8; 3]]) -> Result<Statuses, Error> {
         let start = Instant::now();
         let statuses = work.pixels.read(self.gpu, places.len(), |values| {
             let mut statuses = Statuses::default();
@@ -65,6 +69,6 @@ impl GpuRenderer<'_> {
             statuses
         })?;
         self.times.read_back += start.elapsed();
-        statuses.checked(self.gpu)
+        Ok(statuses)
     }
 }

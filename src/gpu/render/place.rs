@@ -24,6 +24,11 @@ impl Statuses {
         Self { not_finite: self.not_finite + other.not_finite, cut: self.cut + other.cut }
     }
 
+    /// Whether the device may have left out something. Of several samples those that are cut are no numbers.
+    pub(super) fn may_be_cut(self, samples: u64) -> bool {
+        self.cut > 0 || (samples > 1 && self.not_finite > 0)
+    }
+
     /// How many are not finite; an error where the device has left out something.
     pub(super) fn checked(self, gpu: &Gpu) -> Result<u64, Error> {
         match self.cut {
