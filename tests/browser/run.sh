@@ -25,11 +25,16 @@ has_node() {
     command -v npm >/dev/null && [ "$(node -p 'parseInt(process.versions.node)')" -ge 20 ]
 }
 
-if ! has_chromium || ! has_node; then
+# Node may be there from elsewhere, and its package conflict with that one.
+missing=
+has_chromium || missing=chromium
+has_node || missing="$missing nodejs npm"
+if [ -n "$missing" ]; then
     command -v apt-get >/dev/null || skip "no Chromium or no Node 20, and no apt-get to install them"
     as_root apt-get update -q || skip "the package lists cannot be read"
-    as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends chromium nodejs npm ||
-        skip "Chromium and Node cannot be installed"
+    # shellcheck disable=SC2086 # one word for each package
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends $missing ||
+        skip "$missing cannot be installed"
     has_chromium && has_node || skip "Chromium or Node 20 is not there after their installation"
 fi
 npm ci --no-audit --no-fund || skip "npm ci cannot fetch playwright-core"
