@@ -35,11 +35,13 @@ fn print(args: &Args) -> Result<(), Failure> {
             }
             outln!("   f64       {}", if device.f64 { "yes" } else { "no" });
             outln!(
-                "   limits    {} MiB a storage binding, {} MiB a buffer, {} workgroups a dispatch, {} invocations a workgroup",
+                "   limits    {} MiB a storage binding, {} MiB a buffer, {} workgroups a dispatch, {} invocations a workgroup, \
+                 {} storage textures a kernel",
                 device.max_storage_binding / MIB,
                 device.max_buffer / MIB,
                 device.max_workgroups,
-                device.max_invocations
+                device.max_invocations,
+                device.max_storage_textures
             );
             let tuned = DeviceTuning::of(device);
             if let Some(warning) = &tuned.warning {
