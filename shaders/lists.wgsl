@@ -133,6 +133,7 @@ fn any_hit(ray: Ray, own: Own, light: u32, is_asked: bool) -> bool {
         loop {
             let body = body_of(entry_at(at));
             at++;
+            // By what the turns before have found: this one need not wait for its own test, which can but find more of the same.
             let is_over = is_last | blocked | (at == list.y);
             is_last |= is_behind(body, position, distance);
             blocked |= blocks(ray, body, own, t_min);

@@ -59,6 +59,7 @@ fn with_light(color: vec3r, index: u32, surface: Surface, material: Material, is
     if SPECULAR {
         lit += intensity * specular_term(surface, material, to_light, n_dot_l);
     }
+    // After what does not depend on it, unlike src/cpu/shade.rs: processors calculate both at once.
     if SHADOWS {
         if COUNT_RAYS {
             shadow_rays += u32(is_lit);
