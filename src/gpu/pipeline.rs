@@ -60,7 +60,7 @@ impl Specialisation {
             storage: Storage::Tables(gpu.textures()),
             lights: scene.lights.len() as u32,
             places: Places::Both,
-            walk: Walk::AtOnce,
+            walk: Walk::InPlace,
             samples: settings.samples,
             slots: Slots::Tiles,
             count_rays: false,
@@ -76,10 +76,10 @@ impl Specialisation {
             large if large == grid.lists.entries.len() => Places::Large,
             _ => Places::Both,
         };
-        let walk = match NonZeroU32::new(tuning.paths).filter(|_| self.has_paths()) {
-            Some(paths) if places != Places::Large && grid.lists.entries.len() as f64 >= tuning.in_turn_from => {
-                Walk::InTurn(paths)
-            }
+        let entries = grid.lists.entries.len() as f64;
+        let walk = match NonZeroU32::new(tuning.paths) {
+            _ if !self.effects.has(Effect::Reflections) || entries < tuning.in_place_below => Walk::InPlace,
+            Some(paths) if places != Places::Large && entries >= tuning.in_turn_from => Walk::InTurn(paths),
             _ => Walk::AtOnce,
         };
         Self { places, walk, ..self }
@@ -120,7 +120,7 @@ impl Specialisation {
         ];
         if self.refraction.is_some() {
             constants.push(("SKIP_SELF_ALWAYS", f64::from(self.skip_self)));
-        } else if self.storage != Storage::Ranges {
+        } else if self.keeps_paths() {
             constants.push(("VECTORS", self.path_vectors() as f64));
             if let Walk::InTurn(paths) = self.walk {
                 constants.push(("PATHS", f64::from(paths.get())));
@@ -137,9 +137,14 @@ impl Specialisation {
         self.path_vectors() * if self.kernel.is_double() { 32 } else { 16 }
     }
 
-    /// Whether samples go on as paths.
-    pub(super) fn has_paths(&self) -> bool {
-        self.refraction.is_none() && self.effects.has(Effect::Reflections)
+    /// Whether paths are kept from bounce to bounce.
+    pub(super) fn keeps_paths(&self) -> bool {
+        self.refraction.is_none() && self.walk != Walk::InPlace
+    }
+
+    /// Whether the loops of an invocation walk more than one bounce of one path.
+    pub(super) fn shares_turns(&self) -> bool {
+        self.refraction.is_none() && self.effects.has(Effect::Reflections) && self.walk != Walk::AtOnce
     }
 
     /// The module that renders.
@@ -243,10 +248,11 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
     if specialisation.kernel.carries_low() {
         common.extend([9, 10, 21].map(|binding| (binding, vectors)));
     }
-    // Glass, or paths to go on with.
-    match specialisation.refraction {
-        Some(_) => common.push((5, Read)),
-        None => common.extend([(12, ReadWrite), (18, Texels(4)), (19, Uniform)]),
+    if specialisation.refraction.is_some() {
+        common.push((5, Read));
+    }
+    if specialisation.keeps_paths() {
+        common.extend([(12, ReadWrite), (18, Texels(4)), (19, Uniform)]);
     }
     let (see_entry, places) = match specialisation.slots {
         Slots::Tiles => (SEE_TILES, Uniform),
@@ -272,14 +278,13 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
     // cheapest on the main thread.
     std::thread::scope(|scope| {
         let see = scope.spawn(|| kernel(see_entry, &primary));
-        let bounce = specialisation.has_paths().then(|| {
-            let bounce = match specialisation.walk {
-                Walk::AtOnce => Bounce { begin: between()?, walk: kernel(WALK_PATHS, &[(11, vectors)])?, shade: None },
-                Walk::InTurn(_) => {
-                    let shade = scope.spawn(|| kernel(SHADE_PATHS, &[(11, vectors), (22, words)]));
-                    let walk = kernel(WALK_PATHS, &[&[(11, vectors), (23, Texels(1))][..], copies].concat())?;
-                    Bounce { begin: between()?, walk, shade: Some(joined(shade)?) }
-                }
+        let bounce = specialisation.keeps_paths().then(|| {
+            let bounce = if let Walk::InTurn(_) = specialisation.walk {
+                let shade = scope.spawn(|| kernel(SHADE_PATHS, &[(11, vectors), (22, words)]));
+                let walk = kernel(WALK_PATHS, &[&[(11, vectors), (23, Texels(1))][..], copies].concat())?;
+                Bounce { begin: between()?, walk, shade: Some(joined(shade)?) }
+            } else {
+                Bounce { begin: between()?, walk: kernel(WALK_PATHS, &[(11, vectors)])?, shade: None }
             };
             Ok::<_, Error>(bounce)
         });

@@ -264,7 +264,7 @@ impl<'a> Prober<'a> {
             storage: Storage::Ranges,
             lights: 0,
             places: Places::Large,
-            walk: Walk::AtOnce,
+            walk: Walk::InPlace,
             count_rays: false,
             workgroup: 64,
             samples: 1,

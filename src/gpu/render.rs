@@ -154,7 +154,7 @@ impl<'a> GpuRenderer<'a> {
         }
         let mut specialisation = specialisation.with_lists(&accel, tuning);
         let packed = Packed::new(scene, settings, effects, kernel, &accel);
-        if !copies_fit(gpu, &packed, &accel) {
+        if specialisation.variant().copies() && !copies_fit(gpu, &packed, &accel) {
             specialisation.walk = Walk::AtOnce;
         }
         let list_tables = list_contents(&accel);
@@ -273,7 +273,7 @@ impl<'a> GpuRenderer<'a> {
     fn capacity(&self) -> u32 {
         let info = &self.gpu.info;
         let specialisation = &self.inputs.specialisation;
-        let path = 2 * specialisation.path_size() * u64::from(specialisation.has_paths());
+        let path = 2 * specialisation.path_size() * u64::from(specialisation.keeps_paths());
         let tile_bytes = TILE_PIXELS as u64 * self.samples * path.max(4);
         let bytes = MAX_PATH_BYTES.min(info.max_storage_binding).min(info.max_buffer);
         // Paths take a workgroup for so many of them.
@@ -377,11 +377,11 @@ impl<'a> GpuRenderer<'a> {
         Ok(statuses)
     }
 
-    /// Whether the dispatch of so many places has to be repeated, since paths that share an invocation, and so the turns of its
-    /// loops, need more of them than it has: from then on each has its own.
+    /// Whether the dispatch of so many places has to be repeated, since bounces or paths that share an invocation, and so the turns
+    /// of its loops, need more of them than it has: from then on each has its own.
     fn walks_at_once_instead(&mut self, statuses: Statuses, places: usize) -> bool {
         let specialisation = &mut self.inputs.specialisation;
-        let repeats = specialisation.walk != Walk::AtOnce && statuses.may_be_cut(self.samples);
+        let repeats = specialisation.shares_turns() && statuses.may_be_cut(self.samples);
         if repeats {
             specialisation.walk = Walk::AtOnce;
             self.work = None;
@@ -429,10 +429,10 @@ impl Work {
         let slots = pixel_count * u64::from(specialisation.samples * specialisation.samples);
         let pixels = Readable::new(gpu, pixel_count);
         let ray_counts = Readable::new(gpu, if specialisation.count_rays { slots } else { 1 });
-        let paths = specialisation.path_size() * if specialisation.has_paths() { slots } else { 1 };
+        let paths = specialisation.path_size() * if specialisation.keeps_paths() { slots } else { 1 };
         let color_size = if specialisation.kernel.is_double() { 32 } else { 16 };
         let paths = [0, 1].map(|_| empty_texels(gpu, paths, 4));
-        let in_turn = specialisation.walk != Walk::AtOnce;
+        let in_turn = matches!(specialisation.walk, Walk::InTurn(_));
         let hits = empty_texels(gpu, if in_turn { 4 * slots } else { 4 }, 1);
         let tiles = match specialisation.slots {
             Slots::Tiles => empty(u64::from(MAX_DISPATCH_TILES) * 4, wgpu::BufferUsages::UNIFORM | copied),

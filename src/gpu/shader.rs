@@ -98,12 +98,14 @@ pub enum Storage {
     Ranges,
 }
 
-/// How the paths of a bounce are walked.
+/// How paths are walked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Walk {
-    /// One an invocation, which also shades what it meets.
+    /// To the end, by the invocation that casts the primary ray.
+    InPlace,
+    /// A bounce at a time: one an invocation, which also shades what it meets.
     AtOnce,
-    /// So many an invocation, one after another; then a kernel shades what they have met.
+    /// A bounce at a time: so many an invocation, one after another; then a kernel shades what they have met.
     InTurn(NonZeroU32),
 }
 
@@ -138,7 +140,7 @@ pub struct Variant {
 impl Variant {
     /// Whether walks read copies of the spheres in the order of the grid's lists.
     pub fn copies(&self) -> bool {
-        self.refraction.is_none() && self.walk != Walk::AtOnce && !self.kernel.carries_low()
+        self.refraction.is_none() && matches!(self.walk, Walk::InTurn(_)) && !self.kernel.carries_low()
     }
 }
 
@@ -221,10 +223,10 @@ impl Module {
             parts.extend(refract_parts(kernel));
             parts.extend([Part { name: "(the host)", text }, part!("trees.wgsl")]);
         } else {
-            parts.push(part!("paths.wgsl"));
-            parts.push(match walk {
-                Walk::AtOnce => part!("walk_at_once.wgsl"),
-                Walk::InTurn(_) => part!("walk_in_turn.wgsl"),
+            parts.extend(match walk {
+                Walk::InPlace => vec![part!("walk_in_place.wgsl")],
+                Walk::AtOnce => vec![part!("paths.wgsl"), part!("walk_at_once.wgsl")],
+                Walk::InTurn(_) => vec![part!("paths.wgsl"), part!("walk_in_turn.wgsl")],
             });
         }
         parts.push(part!("stages.wgsl"));

@@ -18,13 +18,20 @@ pub struct Knob {
 }
 
 /// All numbers of a tuning.
-pub static KNOBS: [Knob; 10] = [
+pub static KNOBS: [Knob; 11] = [
     Knob {
         name: "workgroup",
         limits: [1.0, 256.0],
         candidates: &[8.0, 16.0, 32.0, 64.0, 128.0, 256.0],
         get: |tuning| f64::from(tuning.workgroup),
         set: |tuning, value| tuning.workgroup = value as u32,
+    },
+    Knob {
+        name: "in_place_below",
+        limits: [0.0, NEVER],
+        candidates: &[0.0, 1e3, 1e4, 1e5],
+        get: |tuning| tuning.in_place_below,
+        set: |tuning, value| tuning.in_place_below = value,
     },
     Knob {
         name: "in_turn_from",

@@ -18,6 +18,8 @@ pub struct Tuning {
     pub workgroup: u32,
     /// Paths that an invocation walks, one after another, through the lists of many spheres.
     pub paths: u32,
+    /// Entries of the grid's lists below which there are so few that whoever casts a primary ray follows the mirrored ones, too.
+    pub in_place_below: f64,
     /// Entries of the grid's lists from which on there are many.
     pub in_turn_from: f64,
     /// Whether kernels read a scene from storage textures instead of sampled ones, where the device has as many as they need.
@@ -77,6 +79,7 @@ impl Tuning {
         let software = Self {
             workgroup: 64,
             paths: 32,
+            in_place_below: 1e4,
             in_turn_from: 1e4,
             // lavapipe takes three quarters of the time of sampled ones.
             stored_tables: true,
@@ -87,7 +90,8 @@ impl Tuning {
         };
         // Its invocations do not wait for each other in the same way, and it wants more of them: measured on a discrete one, where
         // 32 paths an invocation take five to eight times as long.
-        let hardware = Self { dispatch_ms: INTERACTIVE_MS, in_turn_from: NEVER, ..software };
+        // What following mirrored rays in place takes there has not been measured.
+        let hardware = Self { dispatch_ms: INTERACTIVE_MS, in_place_below: 0.0, in_turn_from: NEVER, ..software };
         // Storage textures and sampled ones take the same time there, too.
         match class {
             Class::Software => software,

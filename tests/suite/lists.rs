@@ -139,7 +139,8 @@ fn the_device_leaves_out_nothing_at_any_tier() {
     let Some(_shared) = crate::support::gpu("the_device_leaves_out_nothing_at_any_tier") else { return };
     // Hundreds of pictures with few kinds of kernels.
     let mut gpu = Gpu::open(&Choice::Auto).unwrap().keeping_kernels();
-    let at_once = Tuning { in_turn_from: 1e9, ..gpu.tuned.tuning };
+    let at_once = Tuning { in_place_below: 0.0, in_turn_from: 1e9, ..gpu.tuned.tuning };
+    let in_place = Tuning { in_place_below: 1e9, ..at_once };
     let in_turn = Tuning { in_turn_from: 0.0, paths: 5, ..at_once };
     let kernels: Vec<_> = Tier::ALL.into_iter().filter_map(|tier| gpu.kernel(tier).ok()).collect();
     for kernel in kernels {
@@ -147,7 +148,7 @@ fn the_device_leaves_out_nothing_at_any_tier() {
             let (scene, settings) = (random_scene(seed), settings_of(seed));
             gpu.set_tuning(at_once);
             let all = device(&gpu, kernel, &scene, &settings, Rounding::UNKNOWN);
-            gpu.set_tuning(if seed.is_multiple_of(2) { at_once } else { in_turn });
+            gpu.set_tuning([at_once, in_place, in_turn][seed as usize % 3]);
             let lists = device(&gpu, kernel, &scene, &settings, kernel.rounding());
             assert_eq!(first_difference(&all, &lists, &scene), None, "{kernel:?}, scene {seed}");
         }
@@ -213,11 +214,22 @@ fn a_walk_that_is_too_long_for_a_device_is_no_other_picture() {
     let Some(mut gpu) = crate::support::gpu("a_walk_that_is_too_long_for_a_device_is_no_other_picture") else { return };
     let scene = mirrored(80_000);
     let own = gpu.tuned.tuning;
-    for in_turn_from in [0.0, 1e9] {
-        gpu.set_tuning(Tuning { in_turn_from, ..own });
+    for (in_place_below, in_turn_from) in [(0.0, 0.0), (0.0, 1e9), (1e9, 1e9)] {
+        gpu.set_tuning(Tuning { in_place_below, in_turn_from, ..own });
         assert_whole_or_refused(&gpu, &scene);
     }
     gpu.set_tuning(own);
+}
+
+/// The picture of `scene` with each way to walk: at once, in turn, in place.
+fn walked(gpu: &mut Gpu, scene: &Scene) -> [Vec<u8>; 3] {
+    let own = gpu.tuned.tuning;
+    let pictures = [(0.0, 1e9), (0.0, 0.0), (1e9, 1e9)].map(|(in_place_below, in_turn_from)| {
+        gpu.set_tuning(Tuning { in_place_below, in_turn_from, ..own });
+        device(gpu, Kernel::Tier(Tier::Fast), scene, &Settings::classic(), Rounding::SINGLE)
+    });
+    gpu.set_tuning(own);
+    pictures
 }
 
 /// Walks that are too long together, but none by itself.
@@ -226,14 +238,20 @@ fn long_walks_in_turn_are_walked_at_once_instead() {
     let Some(mut gpu) = crate::support::gpu("long_walks_in_turn_are_walked_at_once_instead") else { return };
     let mut scene = mirrored(6000);
     (scene.width, scene.height) = (64, 64);
-    let settings = Settings::classic();
-    let own = gpu.tuned.tuning;
-    let pictures = [1e9, 0.0].map(|in_turn_from| {
-        gpu.set_tuning(Tuning { in_turn_from, ..own });
-        device(&gpu, Kernel::Tier(Tier::Fast), &scene, &settings, Rounding::SINGLE)
-    });
-    gpu.set_tuning(own);
-    assert_eq!(first_difference(&pictures[0], &pictures[1], &scene), None);
+    let [at_once, in_turn, in_place] = walked(&mut gpu, &scene);
+    assert_eq!(first_difference(&at_once, &in_turn, &scene), None);
+    assert_eq!(first_difference(&at_once, &in_place, &scene), None);
     // They are seen at all.
-    assert!(pictures[0].chunks(3).filter(|pixel| pixel.iter().all(|&level| level > 200)).count() > 100);
+    assert!(at_once.chunks(3).filter(|pixel| pixel.iter().all(|&level| level > 200)).count() > 100);
+}
+
+/// Bounces that are too long together, but none by itself: to and fro between mirrors.
+#[test]
+fn long_bounces_in_place_are_walked_at_once_instead() {
+    let Some(mut gpu) = crate::support::gpu("long_bounces_in_place_are_walked_at_once_instead") else { return };
+    let mut scene = mirrored(21_000);
+    scene.spheres.iter_mut().for_each(|sphere| sphere.kr = 0.5);
+    let [at_once, in_turn, in_place] = walked(&mut gpu, &scene);
+    assert_eq!(first_difference(&at_once, &in_turn, &scene), None);
+    assert_eq!(first_difference(&at_once, &in_place, &scene), None);
 }

@@ -24,8 +24,10 @@ fn kinds() -> impl Iterator<Item = Variant> {
     let ways = [
         (Places::Grid, Textures::Stored, in_turn),
         (Places::Grid, Textures::Sampled, Walk::AtOnce),
-        // Where no sphere is in the grid, there is nothing to walk through.
+        (Places::Grid, Textures::Stored, Walk::InPlace),
+        // Where no sphere is in the grid, there is nothing to walk through in turn.
         (Places::Large, Textures::Stored, Walk::AtOnce),
+        (Places::Large, Textures::Sampled, Walk::InPlace),
         (Places::Both, Textures::Sampled, in_turn),
     ];
     kernels.flat_map(move |kernel| {
@@ -70,7 +72,7 @@ fn entry_points(variant: &Variant) -> Vec<&'static str> {
         Slots::List => SEE_SAMPLES,
     };
     match (variant.refraction, variant.walk) {
-        (Some(_), _) => vec![see],
+        (Some(_), _) | (None, Walk::InPlace) => vec![see],
         (None, Walk::AtOnce) => vec![WALK_PATHS, see],
         (None, Walk::InTurn(_)) => vec![WALK_PATHS, SHADE_PATHS, see],
     }

@@ -1,0 +1,37 @@
+// From the hit of a primary ray on, to the end of its path; read it beside src/cpu/trace.rs.
+//
+// Whoever casts the primary ray follows the mirrored ones too. Lanes wait for the longest path among them, but no path has to be
+// kept, and where nothing is hit there is nothing to shade.
+
+fn follow(primary: Ray, seen: Hit, slot: u32) {
+    var ray = primary;
+    var hit = seen;
+    // What hits nothing shows the background; a reflection ray that hits nothing adds black.
+    var color = select(params.background, vec3r(), hit.found);
+    var throughput = real(1.0);
+    var depth = 0u;
+    if hit.found {
+        loop {
+            let material = material_of(hit.sphere);
+            let surface = surface_at(ray, hit, material);
+            color += local_color(surface, material, true) * throughput;
+            hit.found = false;
+            if REFLECTIONS {
+                throughput = min(throughput * material.kr, MAX_THROUGHPUT);
+                ray = reflection_ray(surface);
+                if !is_cut & (material.kr != real(0.0)) & (depth < params.max_depth) {
+                    if COUNT_RAYS {
+                        reflection_rays++;
+                    }
+                    hit = nearest_secondary(ray, surface.own, reflection_range());
+                }
+                depth++;
+            }
+            if !hit.found {
+                break;
+            }
+        }
+    }
+    finish(slot, color);
+    add_counts(slot);
+}
