@@ -58,8 +58,8 @@ fn echo_layout() {
         echo3(material_of(i).scale);
     }
     for (var i = 0u; i < params.light_count; i++) {
-        echo3(light_of(i).position);
-        echo3(light_of(i).intensity);
+        echo3(light_in_table(i).position);
+        echo3(light_in_table(i).intensity);
     }
     echo3(window_at(2u));
     echo3(window_at(params.window_rows + 2u));

@@ -49,8 +49,8 @@ fn primary_ray(pixel: vec2<u32>) -> Ray {
 }
 
 // From a point to a light, which lies at t = 1.
-fn ray_to_light(origin: Point, light: u32) -> Ray {
-    return ray_with(origin, pair_difference3(Pair3(light_of(light).position, low_light_of(light).position), origin));
+fn ray_to_light(origin: Point, light: Light, index: u32) -> Ray {
+    return ray_with(origin, pair_difference3(Pair3(light.position, low_light_of(index).position), origin));
 }
 
 fn direction_of(ray: Ray) -> vec3r {

@@ -120,10 +120,9 @@ fn is_behind(body: Body, light: vec3r, distance: real) -> bool {
 }
 
 // Whether any sphere stands between the ray's origin and the light with this index, at t = 1.
-fn any_hit(ray: Ray, own: Own, light: u32, is_asked: bool) -> bool {
+fn any_hit(ray: Ray, own: Own, light: Light, index: u32, is_asked: bool) -> bool {
     let from_light = -direction_of(ray);
-    let list = light_list(light, from_light, is_asked);
-    let position = light_of(light).position;
+    let list = light_list(index, from_light, is_asked);
     let distance = sqrt(dot(from_light, from_light)) + params.light_slack;
     let t_min = params.shadow_t_min;
     var blocked = false;
@@ -135,7 +134,7 @@ fn any_hit(ray: Ray, own: Own, light: u32, is_asked: bool) -> bool {
             at++;
             // By what the turns before have found: this one need not wait for its own test, which can but find more of the same.
             let is_over = is_last | blocked | (at == list.y);
-            is_last |= is_behind(body, position, distance);
+            is_last |= is_behind(body, light.position, distance);
             blocked |= blocks(ray, body, own, t_min);
             if is_over {
                 break;

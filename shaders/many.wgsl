@@ -38,8 +38,53 @@ fn light_count() -> u32 {
     return LIGHT_COUNT;
 }
 
-fn light_of(index: u32) -> Light {
+fn light_in_table(index: u32) -> Light {
     return Light(vector_at(lights, 2u * index).xyz, vector_at(lights, 2u * index + 1u).xyz);
+}
+
+// A few lights are loaded once an invocation: choosing among registers costs less than loading one again for each point.
+const FEW_LIGHTS: u32 = 4u;
+var<private> light0: Light;
+var<private> light1: Light;
+var<private> light2: Light;
+var<private> light3: Light;
+
+// Before the first light_of.
+fn load_lights() {
+    if LIGHT_COUNT > 0u && LIGHT_COUNT <= FEW_LIGHTS {
+        light0 = light_in_table(0u);
+        if LIGHT_COUNT > 1u {
+            light1 = light_in_table(1u);
+        }
+        if LIGHT_COUNT > 2u {
+            light2 = light_in_table(2u);
+        }
+        if LIGHT_COUNT > 3u {
+            light3 = light_in_table(3u);
+        }
+    }
+}
+
+// The second where `is_second`, else the first.
+fn either_light(first: Light, second: Light, is_second: bool) -> Light {
+    return Light(select(first.position, second.position, is_second), select(first.intensity, second.intensity, is_second));
+}
+
+fn light_of(index: u32) -> Light {
+    if LIGHT_COUNT > FEW_LIGHTS {
+        return light_in_table(index);
+    }
+    var light = light0;
+    if LIGHT_COUNT > 1u {
+        light = either_light(light, light1, index == 1u);
+    }
+    if LIGHT_COUNT > 2u {
+        light = either_light(light, light2, index == 2u);
+    }
+    if LIGHT_COUNT > 3u {
+        light = either_light(light, light3, index == 3u);
+    }
+    return light;
 }
 
 fn low_light_of(index: u32) -> Light {

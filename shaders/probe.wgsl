@@ -56,7 +56,7 @@ fn probe_nearest(@builtin(global_invocation_id) id: vec3<u32>) {
 @compute @workgroup_size(64)
 fn probe_blocked(@builtin(global_invocation_id) id: vec3<u32>) {
     params = given_params;
-    let blocked = any_hit(probe_ray(id.x), probe_own(probe_words[id.x]), 0u, true);
+    let blocked = any_hit(probe_ray(id.x), probe_own(probe_words[id.x]), Light(), 0u, true);
     probe_flags[id.x] = vec2<u32>(select(0u, PROBE_BLOCKED, blocked), 0u);
     probe_values[id.x] = real(0.0);
 }
@@ -71,10 +71,10 @@ fn probe_lit(@builtin(global_invocation_id) id: vec3<u32>) {
     var n_dot_l = real(0.0);
     if hit.found {
         let surface = surface_at(ray, hit, material_of(hit.sphere));
-        let shadow_ray = ray_to_light(surface.position, id.x);
+        let shadow_ray = ray_to_light(surface.position, light_of(id.x), id.x);
         n_dot_l = dot(surface.normal, direction_of(shadow_ray) * (real(1.0) / sqrt(shadow_ray.a)));
         bits |= select(0u, PROBE_FACING, n_dot_l > real(0.0));
-        bits |= select(0u, PROBE_BLOCKED, any_hit(shadow_ray, surface.own, id.x, true));
+        bits |= select(0u, PROBE_BLOCKED, any_hit(shadow_ray, surface.own, light_of(id.x), id.x, true));
     }
     probe_flags[id.x] = vec2<u32>(bits, hit.sphere);
     probe_values[id.x] = n_dot_l;

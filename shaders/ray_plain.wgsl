@@ -36,9 +36,9 @@ fn primary_ray(pixel: vec2<u32>) -> Ray {
     return ray_from(vec3r(), window_at(pixel.x) + window_at(params.window_rows + pixel.y));
 }
 
-// From a point to a light, which lies at t = 1.
-fn ray_to_light(origin: Point, light: u32) -> Ray {
-    return ray_from(origin, light_of(light).position - origin);
+// From a point to a light, of this index, which lies at t = 1.
+fn ray_to_light(origin: Point, light: Light, index: u32) -> Ray {
+    return ray_from(origin, light.position - origin);
 }
 
 fn direction_of(ray: Ray) -> vec3r {

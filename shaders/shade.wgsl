@@ -46,25 +46,25 @@ fn specular_term(surface: Surface, material: Material, to_light: vec3r, n_dot_l:
 
 // A colour and, where it reaches the surface, the light with this index.
 fn with_light(color: vec3r, index: u32, surface: Surface, material: Material, is_seen: bool) -> vec3r {
-    let shadow_ray = ray_to_light(surface.position, index);
+    let light = light_of(index);
+    let shadow_ray = ray_to_light(surface.position, light, index);
     let to_light = direction_of(shadow_ray) * (real(1.0) / sqrt(shadow_ray.a));
     let n_dot_l = dot(surface.normal, to_light);
     // Not lit from behind, and not by a light at distance 0, where N.L is NaN.
     var is_lit = is_seen & (n_dot_l > real(0.0));
-    let intensity = light_of(index).intensity;
     var lit = color;
     if DIFFUSE {
-        lit += intensity * material.color * (material.kd * n_dot_l);
+        lit += light.intensity * material.color * (material.kd * n_dot_l);
     }
     if SPECULAR {
-        lit += intensity * specular_term(surface, material, to_light, n_dot_l);
+        lit += light.intensity * specular_term(surface, material, to_light, n_dot_l);
     }
     // After what does not depend on it, unlike src/cpu/shade.rs: processors calculate both at once.
     if SHADOWS {
         if COUNT_RAYS {
             shadow_rays += u32(is_lit);
         }
-        is_lit &= !any_hit(shadow_ray, surface.own, index, is_lit);
+        is_lit &= !any_hit(shadow_ray, surface.own, light, index, is_lit);
     }
     return select(color, lit, is_lit);
 }

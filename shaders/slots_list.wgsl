@@ -7,5 +7,6 @@
 @compute @workgroup_size(64)
 fn see_samples(@builtin(global_invocation_id) id: vec3<u32>) {
     params = given_params;
+    load_lights();
     see_pixel(pixel_list[id.x], id.x * SAMPLES * SAMPLES);
 }

@@ -8,6 +8,7 @@
 @compute @workgroup_size(64)
 fn see_tiles(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) index: u32) {
     params = given_params;
+    load_lights();
     let tile = tiles[group.x / 4u][group.x % 4u];
     let pixel = vec2(tile & 0xffffu, tile >> 16u) * 8u + vec2(index % 8u, index / 8u);
     see_pixel(pixel, (group.x * 64u + index) * SAMPLES * SAMPLES);

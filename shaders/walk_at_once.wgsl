@@ -3,6 +3,7 @@
 @compute @workgroup_size(GROUP)
 fn walk_paths(@builtin(global_invocation_id) id: vec3<u32>) {
     params = given_params;
+    load_lights();
     let count = stage.path_count;
     let is_path = id.x < count;
     let path = path_of(min(id.x, count - 1u));

@@ -74,6 +74,7 @@ fn walk_paths(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation
 @compute @workgroup_size(GROUP)
 fn shade_paths(@builtin(global_invocation_id) id: vec3<u32>) {
     params = given_params;
+    load_lights();
     let count = stage.path_count;
     let is_path = id.x < count;
     let index = min(id.x, count - 1u);
