@@ -55,28 +55,31 @@ fn begin_walk(ray: Ray) -> Walk {
 fn take_turn(walk: ptr<function, Walk>, nearest: ptr<function, Hit>, ray: Ray, own: Own, range: Range) {
     // What this turn finds counts from the next one on, which costs a step and lets the two overlap.
     let known = *nearest;
+    // From the place of the wall, since a sum would drift.
+    let next = ((*walk).wall - (*walk).origin) * (*walk).inverse;
+    // Whatever the comparisons say, of NaN even, one axis is taken, so that the walk ends.
+    let is_x = (next.x <= next.y) & (next.x <= next.z);
+    let is_y = !is_x & (next.y <= next.z);
+    let exit = select(select(next.z, next.y, is_y), next.x, is_x);
+    // The hits in later cells are good to far less than this part.
+    let is_done = known.found & (nearest_real(known.t) * real(1.0009765625) < real(exit));
+    // `leave` is of the last walls, by the very same operations.
+    let goes_on = !is_done & (exit < (*walk).leave);
+    let strides = (*walk).strides;
+    let cell = (*walk).cell + select(select(strides.z, strides.y, is_y), strides.x, is_x);
+    // Where the walk is over, the cell may be none of the grid.
+    let list = cell_at(select(params.grid_first, u32(cell), goes_on));
+    let wall = (*walk).wall + select(vec3<f32>(), (*walk).step, vec3<bool>(is_x, is_y, !is_x & !is_y));
     if (*walk).list.x < (*walk).list.y {
         let sphere = entry_at((*walk).list.x);
         *nearest = nearer_of(known, ray, body_in_grid((*walk).list.x, sphere), sphere, own, range);
         (*walk).list.x++;
     }
     if (*walk).list.x >= (*walk).list.y {
-        // From the place of the wall, since a sum would drift.
-        let next = ((*walk).wall - (*walk).origin) * (*walk).inverse;
-        // Whatever the comparisons say, of NaN even, one axis is taken, so that the walk ends.
-        let is_x = (next.x <= next.y) & (next.x <= next.z);
-        let is_y = !is_x & (next.y <= next.z);
-        let exit = select(select(next.z, next.y, is_y), next.x, is_x);
-        // The hits in later cells are good to far less than this part.
-        let is_done = known.found & (nearest_real(known.t) * real(1.0009765625) < real(exit));
-        // `leave` is of the last walls, by the very same operations.
-        (*walk).goes_on = !is_done & (exit < (*walk).leave);
-        (*walk).wall += select(vec3<f32>(), (*walk).step, vec3<bool>(is_x, is_y, !is_x & !is_y));
-        let strides = (*walk).strides;
-        (*walk).cell += select(select(strides.z, strides.y, is_y), strides.x, is_x);
-        // Where the walk is over, the cell may be none of the grid.
-        let cell = select(params.grid_first, u32((*walk).cell), (*walk).goes_on);
-        (*walk).list = select(vec2<u32>(), cell_at(cell), vec2<bool>((*walk).goes_on));
+        (*walk).goes_on = goes_on;
+        (*walk).wall = wall;
+        (*walk).cell = cell;
+        (*walk).list = select(vec2<u32>(), list, vec2<bool>(goes_on));
     }
 }
 

@@ -243,7 +243,7 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
     };
     let [words, pairs, vectors] = [1, 2, 4].map(|components| Access::Table(textures, components));
     // What every stage reads and writes.
-    let mut common = vec![(0, Uniform), (7, ReadWrite), (8, ReadWrite), (13, pairs), (17, words)];
+    let mut common = vec![(0, Uniform), (7, ReadWrite), (8, ReadWrite), (13, pairs), (17, pairs)];
     common.extend([1, 2, 3, 14, 20].map(|binding| (binding, vectors)));
     if specialisation.kernel.carries_low() {
         common.extend([9, 10, 21].map(|binding| (binding, vectors)));

@@ -11,7 +11,7 @@ use crate::accel::Acceleration;
 pub(super) fn list_resources(gpu: &Gpu, [cells, entries]: &[Contents; 2]) -> Result<Vec<(u32, Resource)>, Error> {
     Ok(vec![
         (13, Resource::Texels(upload_texels(gpu, cells, 2)?)),
-        (17, Resource::Texels(upload_texels(gpu, entries, 1)?)),
+        (17, Resource::Texels(upload_texels(gpu, entries, 2)?)),
     ])
 }
 
@@ -69,7 +69,7 @@ pub(super) fn scene_resources(
 type Sizes = Vec<(&'static str, usize, u64)>;
 
 fn list_sizes(gpu: &Gpu, [cells, entries]: &[Contents; 2]) -> Sizes {
-    vec![("cells with lists", cells.len(), max_texels(gpu, 8)), ("lists", entries.len(), max_texels(gpu, 4))]
+    vec![("cells with lists", cells.len(), max_texels(gpu, 8)), ("lists", entries.len(), max_texels(gpu, 8))]
 }
 
 /// Whether the device has no room for these lists.
