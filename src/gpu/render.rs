@@ -3,6 +3,7 @@
 mod list;
 mod place;
 
+use std::num::NonZero;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -26,6 +27,7 @@ use crate::precision::Tier;
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::tiles::TILE;
+use crate::tuning::Class;
 use place::{Statuses, place_tiles};
 
 /// Pixels of a tile.
@@ -67,6 +69,8 @@ pub struct GpuRenderer<'a> {
     covered_tiles: u64,
     background: [u8; 3],
     max_depth: u32,
+    /// Parts that the device's threads take of a dispatch.
+    hands: usize,
     work: Option<Work>,
     inputs: Inputs,
     tiles_per_dispatch: u32,
@@ -184,6 +188,10 @@ impl<'a> GpuRenderer<'a> {
             covered_tiles,
             background: settings.quantize.levels(scene.background),
             max_depth: effects.depth,
+            hands: match Class::of(gpu.info.kind) {
+                Class::Software => std::thread::available_parallelism().map_or(1, NonZero::get),
+                Class::Integrated | Class::Discrete => 1,
+            },
             work: None,
             inputs: Inputs { resources, specialisation },
             tiles_per_dispatch: first.clamp(1, u64::from(MAX_DISPATCH_TILES)) as u32,
@@ -228,7 +236,8 @@ impl<'a> GpuRenderer<'a> {
         let background = self.background;
         rgb.par_chunks_mut(row_bytes).for_each(|row| row.as_chunks_mut::<3>().0.fill(background));
 
-        let tiles = self.cover.covered(first, count);
+        let mut tiles = self.cover.covered(first, count);
+        tiles.sort_by_key(curve);
         let mut not_finite = 0;
         let mut rest = tiles.as_slice();
         while !rest.is_empty() {
@@ -237,6 +246,7 @@ impl<'a> GpuRenderer<'a> {
                 None => self.build()?,
             };
             let (now, later) = rest.split_at(rest.len().min(work.capacity.min(self.tiles_per_dispatch) as usize));
+            let now = &dealt(now, self.hands);
             let took = self.dispatch(&work, now)?;
             let statuses = self.read_back(&work, now, first, rgb)?;
             if self.walks_at_once_instead(statuses, now.len()) {
@@ -409,6 +419,19 @@ impl<'a> GpuRenderer<'a> {
         let factor = (target / took.as_secs_f64().max(1e-9)).min(4.0);
         self.tiles_per_dispatch = ((tiles as f64 * factor) as u32).clamp(1, MAX_DISPATCH_TILES);
     }
+}
+
+/// Tiles in so many hands, one after the other. Drivers that calculate on the CPU give each of their threads one part of the
+/// workgroups: so all have as much to do, and in one part of the picture.
+fn dealt(tiles: &[[u32; 2]], hands: usize) -> Vec<[u32; 2]> {
+    (0..hands).flat_map(|hand| tiles.iter().skip(hand).step_by(hands)).copied().collect()
+}
+
+/// The place of a tile on a curve that stays in one part of the picture (Morton, 1966): mirrored rays that begin near each other
+/// meet the same spheres.
+fn curve([x, y]: &[u32; 2]) -> u64 {
+    let spread = |at: u32| (0..u32::BITS).fold(0, |bits, bit| bits | u64::from(at >> bit & 1) << (2 * bit));
+    spread(x / TILE) | spread(y / TILE) << 1
 }
 
 impl Work {

@@ -45,12 +45,13 @@ impl Statuses {
 pub(super) fn place_tiles(pixels: &[u32], tiles: &[[u32; 2]], first: u32, width: u32, rgb: &mut [u8]) -> Statuses {
     let row_bytes = width as usize * 3;
     let tile_row_bytes = row_bytes * TILE as usize;
+    let mut by_row: Vec<_> = tiles.iter().zip(pixels.chunks(TILE_PIXELS)).collect();
+    by_row.sort_by_key(|(tile, _)| tile[1]);
     let place_row = |(tile_row, band): (usize, &mut [u8])| {
         let y = first + tile_row as u32 * TILE;
-        let start = tiles.partition_point(|tile| tile[1] < y);
-        let end = tiles.partition_point(|tile| tile[1] <= y);
+        let start = by_row.partition_point(|(tile, _)| tile[1] < y);
         let mut statuses = Statuses::default();
-        for (tile, pixels) in tiles[start..end].iter().zip(pixels[start * TILE_PIXELS..].chunks(TILE_PIXELS)) {
+        for (tile, pixels) in by_row[start..].iter().take_while(|(tile, _)| tile[1] == y) {
             let across = TILE.min(width - tile[0]) as usize;
             for (row, pixels) in band.chunks_mut(row_bytes).zip(pixels.chunks(TILE as usize)) {
                 let row = &mut row[tile[0] as usize * 3..][..across * 3];
