@@ -42,8 +42,8 @@ pub static KNOBS: [Knob; 11] = [
     },
     Knob {
         name: "paths",
-        limits: [1.0, 64.0],
-        candidates: &[8.0, 16.0, 32.0, 64.0],
+        limits: [1.0, 256.0],
+        candidates: &[16.0, 32.0, 64.0, 128.0],
         get: |tuning| f64::from(tuning.paths),
         set: |tuning, value| tuning.paths = value as u32,
     },

@@ -77,8 +77,8 @@ impl Tuning {
     /// devices with an NVIDIA H200, where `trueray bench --tune` found nothing better; of integrated ones none was at hand.
     pub const fn of(class: Class) -> Self {
         let software = Self {
-            workgroup: 64,
-            paths: 32,
+            workgroup: 16,
+            paths: 64,
             in_place_below: 1e4,
             in_turn_from: 1e4,
             // lavapipe takes three quarters of the time of sampled ones.
@@ -91,7 +91,7 @@ impl Tuning {
         // Its invocations do not wait for each other in the same way, and it wants more of them: measured on a discrete one, where
         // 32 paths an invocation take five to eight times as long.
         // What following mirrored rays in place takes there has not been measured.
-        let hardware = Self { dispatch_ms: INTERACTIVE_MS, in_place_below: 0.0, in_turn_from: NEVER, ..software };
+        let hardware = Self { workgroup: 64, dispatch_ms: INTERACTIVE_MS, in_place_below: 0.0, in_turn_from: NEVER, ..software };
         // Storage textures and sampled ones take the same time there, too.
         match class {
             Class::Software => software,
