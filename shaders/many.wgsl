@@ -25,11 +25,18 @@ fn low_shape_of(sphere: u32) -> Shape {
     return Shape(vector_at(shapes_low, sphere), vector_at(shape_ends_low, sphere).xyz, bits_at(shape_ends_low, sphere));
 }
 
+// Vectors of a material.
+override MATERIAL: u32 = 3u;
+
 fn material_of(sphere: u32) -> Material {
-    let at = 3u * sphere;
+    let at = MATERIAL * sphere;
     let color = vector_at(materials, at);
     let factors = vector_at(materials, at + 1u);
-    return Material(color.xyz, color.w, factors.x, factors.y, factors.z, factors.w, vector_at(materials, at + 2u).xyz);
+    var scale = vec3r(1.0);
+    if MATERIAL == 3u {
+        scale = vector_at(materials, at + 2u).xyz;
+    }
+    return Material(color.xyz, color.w, factors.x, factors.y, factors.z, factors.w, scale);
 }
 
 // Not from `params`: compilers for software devices look for conditions that depend on uniform buffers alone, and compile anew

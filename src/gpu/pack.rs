@@ -39,12 +39,12 @@ impl<'a> Contents<'a> {
         Self { count, size: size_of::<T>(), write: Box::new(write) }
     }
 
-    /// One half of the bytes of each element.
-    fn half<T: Pod>(count: usize, half: usize, element: impl Fn(usize) -> T + Sync + 'a) -> Self {
-        let size = size_of::<T>() / 2;
+    /// Some of the bytes of each element.
+    fn part<T: Pod>(count: usize, part: Range<usize>, element: impl Fn(usize) -> T + Sync + 'a) -> Self {
+        let size = part.len();
         let write = move |range: Range<usize>, bytes: &mut [u8]| {
             for (place, index) in bytes.chunks_exact_mut(size).zip(range) {
-                place.copy_from_slice(&bytemuck::bytes_of(&element(index))[half * size..][..size]);
+                place.copy_from_slice(&bytemuck::bytes_of(&element(index))[part.clone()]);
             }
         };
         Self { count, size, write: Box::new(write) }
@@ -112,7 +112,7 @@ pub(super) struct Packed<'a> {
     pub(super) params: Contents<'a>,
     /// The first halves of the shapes and the second, one of each per sphere.
     pub(super) shapes: [Contents<'a>; 2],
-    /// One per sphere.
+    /// One per sphere, without what only object space needs where there is none.
     pub(super) materials: Contents<'a>,
     /// One per sphere; empty where nothing refracts.
     pub(super) glasses: Contents<'a>,
@@ -190,19 +190,22 @@ fn pack<'a, L: Layout + 'a>(
     let faces = accel.lights.faces.iter().zip(bases.iter().skip(1));
     let faces: Vec<_> = faces.flat_map(|(faces, &base)| faces.map(|face| (face, base))).collect();
     let (spheres, lights) = (scene.spheres.len(), &scene.lights);
+    let half = size_of::<L::Shape>() / 2;
     let halves = |low: bool| {
-        [0, 1].map(|half| {
+        [0..half, half..2 * half].map(|part| {
             let shape = shape.clone();
-            Contents::half(spheres, half, move |i| {
+            Contents::part(spheres, part, move |i| {
                 let shape = shape(i);
                 L::shape(&if low { low_shape::<L>(&shape) } else { shape })
             })
         })
     };
+    // All, or all but the last vector.
+    let material_size = size_of::<L::Material>() / 3 * if true_axes { 3 } else { 2 };
     Packed {
         params: Contents::new(1, move |_| L::params(&params)),
         shapes: halves(false),
-        materials: Contents::new(spheres, material),
+        materials: Contents::part(spheres, 0..material_size, material),
         glasses: Contents::new(if on(Effect::Refraction) { spheres } else { 0 }, |i| L::glass(&scene.spheres[i])),
         lights: Contents::new(lights.len(), |i| L::light(&lights[i])),
         window: Contents::new(window.len(), move |i| window[i].extend(0.0).to_array().map(L::real)),

@@ -93,7 +93,7 @@ impl Specialisation {
 
     /// Whether the intersection reads second halves of shapes.
     pub(super) fn reads_shape_ends(&self) -> bool {
-        self.effects.has(Effect::Ellipsoids) || self.skip_self
+        self.effects.has(Effect::Ellipsoids) || self.skip_self || self.refraction.is_some()
     }
 
     /// Vectors that keep a path: as `shaders/paths.wgsl` has them.
@@ -128,6 +128,7 @@ impl Specialisation {
         }
         if self.storage != Storage::Ranges {
             constants.push(("LIGHT_COUNT", f64::from(self.lights)));
+            constants.push(("MATERIAL", 2.0 + on(Effect::Ellipsoids)));
         }
         constants
     }

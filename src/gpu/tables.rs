@@ -46,11 +46,13 @@ pub(super) fn scene_resources(
     // A binding of size 0 is not allowed.
     let filled =
         |contents: &Contents, usage| upload(gpu, contents, usage, contents.len().max(64)).map(Resource::Buffer);
-    let texels = |contents| upload_texels(gpu, contents, 4).map(Resource::Texels);
+    let texels = |contents: &Contents| upload_texels(gpu, contents, 4).map(Resource::Texels);
+    let none = Contents::packed(&[]);
+    let second_half = |half| texels(if specialisation.reads_shape_ends() { half } else { &none });
     let mut resources = vec![
         (0, filled(&packed.params, uniform)?),
         (1, texels(&packed.shapes[0])?),
-        (20, texels(&packed.shapes[1])?),
+        (20, second_half(&packed.shapes[1])?),
         (2, texels(&packed.materials)?),
         (3, texels(&packed.lights)?),
         (4, texels(&packed.window)?),
@@ -59,8 +61,8 @@ pub(super) fn scene_resources(
     if specialisation.refraction.is_some() {
         resources.push((5, filled(&packed.glasses, storage)?));
     }
-    if let Some(([first_halves, second_halves], lights)) = &packed.low {
-        resources.extend([(9, texels(first_halves)?), (21, texels(second_halves)?), (10, texels(lights)?)]);
+    if let Some((halves, lights)) = &packed.low {
+        resources.extend([(9, texels(&halves[0])?), (21, second_half(&halves[1])?), (10, texels(lights)?)]);
     }
     Ok(resources)
 }

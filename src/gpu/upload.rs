@@ -107,6 +107,7 @@ pub(super) fn texels(gpu: &Gpu, contents: &Contents, components: u32) -> wgpu::T
     let extent = |rows: usize| wgpu::Extent3d { width: ROW, height: rows as u32, depth_or_array_layers: 1 };
     let usage = table_usage(gpu) | wgpu::TextureUsages::COPY_DST;
     let texture = texture(gpu, contents.len().div_ceil(row).max(1) as u32, format, usage);
+    let mut on_the_way = None;
     for start in (0..contents.len()).step_by(band) {
         let len = band.min(contents.len() - start);
         let rows = len.div_ceil(row);
@@ -129,9 +130,11 @@ pub(super) fn texels(gpu: &Gpu, contents: &Contents, components: u32) -> wgpu::T
         let origin = wgpu::Origin3d { y: (start / row) as u32, ..wgpu::Origin3d::ZERO };
         let target = wgpu::TexelCopyTextureInfo { origin, ..texture.as_image_copy() };
         encoder.copy_buffer_to_texture(source, target, extent(rows));
-        gpu.queue.submit([encoder.finish()]);
-        // Only then is the memory on the way free for the next band.
-        let _ = gpu.device.poll(wgpu::PollType::wait_indefinitely());
+        let submission_index = Some(gpu.queue.submit([encoder.finish()]));
+        // One band is packed while the one before is copied; only then is the memory on the way free for the next.
+        if let Some(before) = on_the_way.replace(submission_index) {
+            let _ = gpu.device.poll(wgpu::PollType::Wait { submission_index: before, timeout: None });
+        }
     }
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
