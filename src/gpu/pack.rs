@@ -60,27 +60,28 @@ impl<'a> Contents<'a> {
         Self { count: indices.len(), size: all.size, write: Box::new(write) }
     }
 
-    /// Bytes that are packed already.
-    pub(super) fn packed(all: &'a [u8]) -> Self {
-        let write = |range: Range<usize>, bytes: &mut [u8]| bytes.copy_from_slice(&all[range]);
-        Self { count: all.len(), size: 1, write: Box::new(write) }
+    /// Elements that are packed already.
+    pub(super) fn packed<T: Pod + Sync>(all: &'a [T]) -> Self {
+        let write = |range: Range<usize>, bytes: &mut [u8]| bytes.copy_from_slice(bytemuck::cast_slice(&all[range]));
+        Self { count: all.len(), size: size_of::<T>(), write: Box::new(write) }
     }
 
-    /// The elements of several parts, each given by their number and by index, one part after another.
-    fn joined<T: Pod>(parts: Vec<(usize, impl Fn(usize) -> T + Sync + 'a)>) -> Self {
-        let count = parts.iter().map(|(count, _)| count).sum();
-        let write = move |range: Range<usize>, bytes: &mut [u8]| {
-            let mut places = bytes.chunks_exact_mut(size_of::<T>());
+    /// The elements of several parts, one part after another.
+    fn joined(parts: Vec<Contents<'a>>) -> Self {
+        let count = parts.iter().map(|part| part.count).sum();
+        let size = parts.first().map_or(1, |part| part.size);
+        let write = move |range: Range<usize>, mut bytes: &mut [u8]| {
             let mut start = 0;
-            for (count, element) in &parts {
-                let here = |index: usize| index.clamp(start, start + count) - start;
-                for (index, place) in (here(range.start)..here(range.end)).zip(places.by_ref()) {
-                    place.copy_from_slice(bytemuck::bytes_of(&element(index)));
-                }
-                start += count;
+            for part in &parts {
+                let here = |index: usize| index.clamp(start, start + part.count) - start;
+                let range = here(range.start)..here(range.end);
+                let (own, rest) = bytes.split_at_mut(range.len() * size);
+                (part.write)(range, own);
+                bytes = rest;
+                start += part.count;
             }
         };
-        Self { count, size: size_of::<T>(), write: Box::new(write) }
+        Self { count, size, write: Box::new(write) }
     }
 
     /// Bytes of all elements.
@@ -237,10 +238,10 @@ fn entry_bases(accel: &Acceleration) -> impl Iterator<Item = u32> {
 /// Where the list of each cell begins in the entries of all lists and where it ends; and these entries.
 pub(super) fn list_contents(accel: &Acceleration) -> [Contents<'_>; 2] {
     let cells = all_lists(accel).zip(entry_bases(accel)).map(|(lists, base)| {
-        let cell = move |index: usize| [lists.offsets[index] + base, lists.offsets[index + 1] + base];
-        (lists.cells(), cell)
+        let offsets = &lists.offsets;
+        Contents::new(lists.cells(), move |index: usize| [offsets[index] + base, offsets[index + 1] + base])
     });
-    let entries = all_lists(accel).map(|lists| (lists.entries.len(), |index: usize| lists.entries[index]));
+    let entries = all_lists(accel).map(|lists| Contents::packed(&lists.entries));
     [Contents::joined(cells.collect()), Contents::joined(entries.collect())]
 }
 

@@ -47,7 +47,7 @@ pub(super) fn scene_resources(
     let filled =
         |contents: &Contents, usage| upload(gpu, contents, usage, contents.len().max(64)).map(Resource::Buffer);
     let texels = |contents: &Contents| upload_texels(gpu, contents, 4).map(Resource::Texels);
-    let none = Contents::packed(&[]);
+    let none = Contents::packed::<u8>(&[]);
     let second_half = |half| texels(if specialisation.reads_shape_ends() { half } else { &none });
     let mut resources = vec![
         (0, filled(&packed.params, uniform)?),
