@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use bytemuck::Pod;
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::layout::{Layout, ListValues, ParamValues, ShapeValues, double, single};
 use super::shader::Kernel;
@@ -50,14 +51,14 @@ impl<'a> Contents<'a> {
         Self { count, size, write: Box::new(write) }
     }
 
-    /// Elements of `all` by these indices.
-    pub(super) fn gathered(all: &'a Contents<'_>, indices: &'a [u32]) -> Self {
-        let write = |range: Range<usize>, bytes: &mut [u8]| {
-            for (place, &index) in bytes.chunks_exact_mut(all.size).zip(&indices[range]) {
-                all.write(index as usize * all.size, place);
+    /// Elements of so many bytes, by their indices among those in `all`.
+    pub(super) fn gathered(all: &'a [u8], size: usize, indices: &'a [u32]) -> Self {
+        let write = move |range: Range<usize>, bytes: &mut [u8]| {
+            for (place, &index) in bytes.chunks_exact_mut(size).zip(&indices[range]) {
+                place.copy_from_slice(&all[index as usize * size..][..size]);
             }
         };
-        Self { count: indices.len(), size: all.size, write: Box::new(write) }
+        Self { count: indices.len(), size, write: Box::new(write) }
     }
 
     /// Elements that are packed already.
@@ -103,7 +104,9 @@ impl<'a> Contents<'a> {
     /// All elements.
     pub(super) fn bytes(&self) -> Vec<u8> {
         let mut bytes = vec![0; self.len()];
-        self.write(0, &mut bytes);
+        let piece = self.size << 14;
+        let pieces = bytes.par_chunks_mut(piece.max(1)).enumerate();
+        pieces.for_each(|(index, bytes)| self.write(index * piece, bytes));
         bytes
     }
 }

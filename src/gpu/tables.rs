@@ -29,11 +29,15 @@ pub(super) fn copy_resources(
     specialisation: &Specialisation,
 ) -> Result<Vec<(u32, Resource)>, Error> {
     let Some(grid) = accel.grid.as_ref().filter(|_| specialisation.variant().copies()) else { return Ok(Vec::new()) };
-    let texels = |half: usize, entries: &[u32]| {
-        upload_texels(gpu, &Contents::gathered(&packed.shapes[half], entries), 4).map(Resource::Texels)
+    let texels = |half: &Contents, entries: &[u32]| {
+        // Packed once: to pack the spheres in any order takes far longer than to copy them so.
+        let all = half.bytes();
+        upload_texels(gpu, &Contents::gathered(&all, half.element_size(), entries), 4).map(Resource::Texels)
     };
-    let ends = if specialisation.reads_shape_ends() { &grid.lists.entries[..] } else { &[] };
-    Ok(vec![(24, texels(0, &grid.lists.entries)?), (25, texels(1, ends)?)])
+    let [first, second] = &packed.shapes;
+    let none = Contents::packed::<u8>(&[]);
+    let ends = if specialisation.reads_shape_ends() { (second, &grid.lists.entries[..]) } else { (&none, &[][..]) };
+    Ok(vec![(24, texels(first, &grid.lists.entries)?), (25, texels(ends.0, ends.1)?)])
 }
 
 /// The buffers and textures of the scene, by binding, beside those of the lists.
