@@ -242,15 +242,12 @@ impl Effects {
 
     /// How many refraction rays wait at the most until the reflected rays beside them have been followed to their ends.
     pub fn waiting(&self, scene: &Scene) -> u32 {
-        let [reflects, refracts] = [Effect::Reflections, Effect::Refraction].map(|effect| self.set.has(effect));
-        let branches = reflects && scene.spheres.iter().any(|s| s.kr != 0.0 && s.kt != 0.0);
-        if !refracts {
-            0
-        } else if branches {
-            self.depth.max(1)
-        } else {
-            1
+        if !self.set.has(Effect::Refraction) {
+            return 0;
         }
+        let reflects = self.set.has(Effect::Reflections);
+        let branches = reflects && scene.spheres.iter().any(|s| s.kr != 0.0 && s.kt != 0.0);
+        if branches { self.depth.max(1) } else { 1 }
     }
 
     /// Why `scene` cannot be rendered so deep; `None` where it can.

@@ -46,7 +46,7 @@ impl ScreenLists {
             let edge = TILE << shift;
             let (across, down) = (camera.width().div_ceil(edge), camera.height().div_ceil(edge));
             let tiles = Tiles { bounds: &bounds, camera, shift, across, down };
-            if across * down == 1 || u64::from(across) * u64::from(down) + tiles.rectangles(limit) <= limit {
+            if across * down == 1 || u64::from(across) * u64::from(down) + tiles.rectangles() <= limit {
                 let (width, height) = (camera.width(), camera.height());
                 return Self { lists: Lists::build(&tiles), shift, across, width, height };
             }
@@ -111,18 +111,11 @@ impl Cover {
 }
 
 impl Tiles<'_> {
-    /// How many tiles the rectangles around the spheres have, counted until beyond `limit`.
-    fn rectangles(&self, limit: u64) -> u64 {
+    /// How many tiles the rectangles around the spheres have.
+    fn rectangles(&self) -> u64 {
         let edge = TILE << self.shift;
-        let mut sum = 0;
-        for bounds in self.bounds.iter().flatten() {
-            let span = |[first, last]: [u32; 2]| u64::from(last / edge - first / edge + 1);
-            sum += span(bounds.rows) * span(bounds.columns);
-            if sum > limit {
-                break;
-            }
-        }
-        sum
+        let span = |[first, last]: [u32; 2]| u64::from(last / edge - first / edge + 1);
+        self.bounds.par_iter().flatten().map(|bounds| span(bounds.rows) * span(bounds.columns)).sum()
     }
 }
 

@@ -15,7 +15,7 @@ pub(super) fn prepare() {
 
 /// Allocations from this size on are given back to the system when they are freed.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
-const LARGE: libc::c_int = 4 << 20;
+const LARGE: libc::c_int = 16 << 20;
 
 /// Lists of a million spheres come and go before the device takes its share of memory. Left to itself glibc learns from the
 /// first large block to keep those that follow: a hundred MiB that nobody uses.

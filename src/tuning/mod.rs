@@ -91,7 +91,8 @@ impl Tuning {
         // Its invocations do not wait for each other in the same way, and it wants more of them: measured on a discrete one, where
         // 32 paths an invocation take five to eight times as long.
         // What following mirrored rays in place takes there has not been measured.
-        let hardware = Self { workgroup: 64, dispatch_ms: INTERACTIVE_MS, in_place_below: 0.0, in_turn_from: NEVER, ..software };
+        let hardware =
+            Self { workgroup: 64, dispatch_ms: INTERACTIVE_MS, in_place_below: 0.0, in_turn_from: NEVER, ..software };
         // Storage textures and sampled ones take the same time there, too.
         match class {
             Class::Software => software,
