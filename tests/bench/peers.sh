@@ -1,16 +1,16 @@
 #!/usr/bin/env sh
 # The same scenes rendered by trueray and by whichever of POV-Ray and Tachyon is installed, in alternation on this machine.
 #
-# usage: sh tests/bench/peers.sh [SCENE…]      without scenes: the random spheres of `trueray bench`
+# usage: sh tests/bench/peers.sh [SCENE…]      without scenes: those of `trueray bench`
 #
 # One sample a pixel, as many bounces, as many threads for all. `prepare` is what each program reports of the time between
-# reading the scene and the first ray, `render` of tracing alone; `process` is from its start to the finished picture. All
-# are medians in ms with the least and the greatest run behind.
+# reading the scene and the first ray, `render` of tracing alone, `both` of the two in one run; `process` is from its start to
+# the finished picture. All are medians in ms with the least and the greatest run behind.
 # The ratios are to trueray: above 1 is slower. Behind them: how far the picture is from trueray's, as `trueray compare`
 # counts it, at the rounding of levels that the program has.
 #
-# From the environment: RUNS (5), THREADS (2, at most the number of cores), RES (1920x1080), MAX_SPHERES (1000),
-# DEVICE (auto), TRUERAY (target/release/trueray), KEEP (a folder that keeps pictures and exported scenes).
+# From the environment: RUNS (5), THREADS (2, at most the number of cores), RES (1920x1080), FAMILIES (spheres) and MAX_SPHERES
+# (1000) of the scenes, PRECISION (auto), DEVICE (auto), TRUERAY (target/release/trueray), KEEP (a folder that keeps pictures and exported scenes).
 set -eu
 
 root=$(cd "$(dirname "$0")/../.." && pwd)
@@ -21,6 +21,7 @@ threads=${THREADS:-2}
 [ "$threads" -le "$cores" ] || threads=$cores
 res=${RES:-1920x1080}
 device=${DEVICE:-auto}
+precision=${PRECISION:-auto}
 
 if [ ! -x "$trueray" ]; then
     echo "there is no $trueray: build it with cargo build --release, or set TRUERAY" >&2
@@ -61,7 +62,8 @@ failed() { # log
 # Each runs one program once and appends its times in ms to NAME.render and NAME.process.
 run_trueray() { # scene, quantize, picture
     start=$(now)
-    "$trueray" render "$1" -o "$3" --res "$res" --quantize "$2" --device "$device" --stats-json "$3.json" --no-ray-counts -q
+    "$trueray" render "$1" -o "$3" --res "$res" --quantize "$2" --device "$device" --precision "$precision" \
+        --stats-json "$3.json" --no-ray-counts -q
     since "$start" >>"$folder/trueray.process"
     for what in prepare render; do
         awk -F'[:,]' "/\"${what}_ms\"/"' { printf "%.3f\n", $2 }' "$3.json" >>"$folder/trueray.$what"
@@ -91,7 +93,8 @@ range() { sort -g "$1" | awk 'NR == 1 { low = $1 } { high = $1 } END { printf "(
 number() { awk -F'[:,]' -v key="\"$1\"" 'index($1, key) { print $2 + 0; exit }' "$2"; }
 
 row() { # name, what stands behind its first line
-    for what in prepare render process; do
+    paste "$folder/$1.prepare" "$folder/$1.render" | awk 'NF == 2 { print $1 + $2 }' >"$folder/$1.both"
+    for what in prepare render both process; do
         file=$folder/$1.$what
         if [ ! -s "$file" ]; then
             echo "  $1 reported no $what time"
@@ -138,7 +141,8 @@ scene_of() { # file
         quantize=truncate
         if [ "$peer" = povray ]; then
             quantize=round
-            "$trueray" render "$1" -o "$folder/$name.round.ppm" --res "$res" --quantize round --device "$device" -q
+            "$trueray" render "$1" -o "$folder/$name.round.ppm" --res "$res" --quantize round --device "$device" \
+                --precision "$precision" -q
         fi
         code=0
         "$trueray" compare --json "$folder/$name.$quantize.ppm" "$folder/$name.$peer.ppm" >"$folder/compare.json" || code=$?
@@ -149,7 +153,7 @@ scene_of() { # file
     done
 }
 
-echo "$("$trueray" --version), $res, $threads threads, $runs runs, medians in ms (least … greatest)"
+echo "$("$trueray" --version), $res, $threads threads, precision $precision, $runs runs, medians in ms (least … greatest)"
 for peer in $peers; do
     case $peer in
     povray) povray --version 2>&1 | sed -n 's/^\(POV-Ray [0-9.a-z]*\).*/\1/p' | head -n 1 ;;
@@ -158,9 +162,9 @@ for peer in $peers; do
 done
 
 if [ $# -eq 0 ]; then
-    "$trueray" bench --families spheres --max-spheres "${MAX_SPHERES:-1000}" --write "$folder/scenes" 2>/dev/null
+    "$trueray" bench --families "${FAMILIES:-spheres}" --max-spheres "${MAX_SPHERES:-1000}" --write "$folder/scenes" 2>/dev/null
     # By size, not by name.
-    set -- $(ls -rS "$folder/scenes"/spheres-*.txt)
+    set -- $(ls -rS "$folder/scenes"/*.txt)
 fi
 for scene in "$@"; do
     scene_of "$scene"
