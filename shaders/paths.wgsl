@@ -76,12 +76,9 @@ fn shade(ray: Ray, hit: Hit, is_path: bool, slot: u32, before: vec3r, throughput
     let material = material_of(hit.sphere);
     let surface = surface_at(ray, hit, material);
     let color = select(before, before + local_color(surface, material, hit.found) * throughput, hit.found);
-    var goes_on = false;
-    if REFLECTIONS {
-        goes_on = hit.found & !is_cut & (material.kr != real(0.0)) & (has_next != 0u);
-        if goes_on {
-            reflect(surface, color, min(throughput * material.kr, MAX_THROUGHPUT), slot);
-        }
+    let goes_on = hit.found & !is_cut & (material.kr != real(0.0)) & (has_next != 0u);
+    if goes_on {
+        reflect(surface, color, min(throughput * material.kr, MAX_THROUGHPUT), slot);
     }
     if is_path {
         if !goes_on {

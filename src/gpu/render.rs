@@ -1,6 +1,7 @@
 //! Rows of pixels from the device: tiles in dispatches that stay short, read back and put in place.
 
 mod list;
+mod order;
 mod place;
 
 use std::num::NonZero;
@@ -28,6 +29,7 @@ use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::tiles::TILE;
 use crate::tuning::Class;
+use order::{curve, dealt};
 use place::{Statuses, place_tiles};
 
 /// Pixels of a tile.
@@ -237,7 +239,7 @@ impl<'a> GpuRenderer<'a> {
         rgb.par_chunks_mut(row_bytes).for_each(|row| row.as_chunks_mut::<3>().0.fill(background));
 
         let mut tiles = self.cover.covered(first, count);
-        tiles.sort_by_key(curve);
+        tiles.sort_by_key(|&tile| curve(tile));
         let mut not_finite = 0;
         let mut rest = tiles.as_slice();
         while !rest.is_empty() {
@@ -419,19 +421,6 @@ impl<'a> GpuRenderer<'a> {
         let factor = (target / took.as_secs_f64().max(1e-9)).min(4.0);
         self.tiles_per_dispatch = ((tiles as f64 * factor) as u32).clamp(1, MAX_DISPATCH_TILES);
     }
-}
-
-/// Tiles in so many hands, one after the other. Drivers that calculate on the CPU give each of their threads one part of the
-/// workgroups: so all have as much to do, and in one part of the picture.
-fn dealt(tiles: &[[u32; 2]], hands: usize) -> Vec<[u32; 2]> {
-    (0..hands).flat_map(|hand| tiles.iter().skip(hand).step_by(hands)).copied().collect()
-}
-
-/// The place of a tile on a curve that stays in one part of the picture (Morton, 1966): mirrored rays that begin near each other
-/// meet the same spheres.
-fn curve([x, y]: &[u32; 2]) -> u64 {
-    let spread = |at: u32| (0..u32::BITS).fold(0, |bits, bit| bits | u64::from(at >> bit & 1) << (2 * bit));
-    spread(x / TILE) | spread(y / TILE) << 1
 }
 
 impl Work {

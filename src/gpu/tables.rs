@@ -65,8 +65,8 @@ pub(super) fn scene_resources(
     if specialisation.refraction.is_some() {
         resources.push((5, filled(&packed.glasses, storage)?));
     }
-    if let Some((halves, lights)) = &packed.low {
-        resources.extend([(9, texels(&halves[0])?), (21, second_half(&halves[1])?), (10, texels(lights)?)]);
+    if let Some(([first, second], lights)) = &packed.low {
+        resources.extend([(9, texels(first)?), (21, second_half(second)?), (10, texels(lights)?)]);
     }
     Ok(resources)
 }
