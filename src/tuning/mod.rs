@@ -78,14 +78,14 @@ impl Tuning {
     pub const fn of(class: Class) -> Self {
         let software = Self {
             workgroup: 16,
-            paths: 64,
+            paths: 32,
             in_place_below: 1e4,
             in_turn_from: 1e4,
             // lavapipe takes three quarters of the time of sampled ones.
             stored_tables: true,
             density: Density::DEFAULT,
             // No watchdog guards them, and their threads wait for each other at the end of each.
-            dispatch_ms: 100.0,
+            dispatch_ms: 200.0,
             first_dispatch_tests: 4e6,
         };
         // Its invocations do not wait for each other in the same way, and it wants more of them: measured on a discrete one, where
