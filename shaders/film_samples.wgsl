@@ -18,4 +18,9 @@ fn see_pixel(pixel: vec2<u32>, first_slot: u32) {
             break;
         }
     }
+    // One that is cut stands for all that follow.
+    if sample < SAMPLES * SAMPLES {
+        is_cut = true;
+        finish(first_slot, vec3r());
+    }
 }

@@ -48,7 +48,7 @@ fn primary_ray(pixel: vec2<u32>) -> Ray {
     return ray_with(Point(vec3r(), vec3r()), direction);
 }
 
-// From a point to a light, which lies at t = 1.
+// From a point to the light with this index, which lies at t = 1.
 fn ray_to_light(origin: Point, light: Light, index: u32) -> Ray {
     return ray_with(origin, pair_difference3(Pair3(light.position, low_light_of(index).position), origin));
 }

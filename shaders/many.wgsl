@@ -17,15 +17,28 @@
 
 override LIGHT_COUNT: u32 = 0u;
 
+// Whether the second halves are there.
+override SHAPE_ENDS: bool = true;
+
 fn shape_of(sphere: u32) -> Shape {
-    return Shape(vector_at(shapes, sphere), vector_at(shape_ends, sphere).xyz, bits_at(shape_ends, sphere));
+    var shape = Shape(vector_at(shapes, sphere), vec3r(1.0), 0u);
+    if SHAPE_ENDS {
+        shape.inv_scale = vector_at(shape_ends, sphere).xyz;
+        shape.index = bits_at(shape_ends, sphere);
+    }
+    return shape;
 }
 
 fn low_shape_of(sphere: u32) -> Shape {
-    return Shape(vector_at(shapes_low, sphere), vector_at(shape_ends_low, sphere).xyz, bits_at(shape_ends_low, sphere));
+    var shape = Shape(vector_at(shapes_low, sphere), vec3r(), 0u);
+    if SHAPE_ENDS {
+        shape.inv_scale = vector_at(shape_ends_low, sphere).xyz;
+        shape.index = bits_at(shape_ends_low, sphere);
+    }
+    return shape;
 }
 
-// Vectors of a material.
+// Vectors of a material: material_vectors in src/gpu/pack.rs.
 override MATERIAL: u32 = 3u;
 
 fn material_of(sphere: u32) -> Material {

@@ -36,7 +36,7 @@ fn primary_ray(pixel: vec2<u32>) -> Ray {
     return ray_from(vec3r(), window_at(pixel.x) + window_at(params.window_rows + pixel.y));
 }
 
-// From a point to a light, of this index, which lies at t = 1.
+// From a point to the light with this index, which lies at t = 1.
 fn ray_to_light(origin: Point, light: Light, index: u32) -> Ray {
     return ray_from(origin, light.position - origin);
 }

@@ -85,6 +85,8 @@ fn local_color(surface: Surface, material: Material, is_seen: bool) -> vec3r {
                     break;
                 }
             }
+            // Not by the condition of the loop, which compilers may take for granted behind it.
+            is_cut |= index < light_count();
         }
     }
     return color;

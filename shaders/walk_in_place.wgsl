@@ -15,7 +15,7 @@ fn follow(primary: Ray, seen: Hit, slot: u32) {
             let material = material_of(hit.sphere);
             let surface = surface_at(ray, hit, material);
             color += local_color(surface, material, true) * throughput;
-            hit.found = false;
+            hit = no_hit();
             if REFLECTIONS {
                 throughput = min(throughput * material.kr, MAX_THROUGHPUT);
                 ray = reflection_ray(surface);
@@ -31,6 +31,8 @@ fn follow(primary: Ray, seen: Hit, slot: u32) {
                 break;
             }
         }
+        // Not by the condition of the loop, which compilers may take for granted behind it.
+        is_cut |= is_nearer(hit.t, distance_of(FAR));
     }
     finish(slot, color);
     add_counts(slot);

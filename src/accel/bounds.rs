@@ -10,7 +10,8 @@ use crate::scene::{Scene, Sphere};
 pub struct Rounding {
     /// Unit roundoff of the intersection tests.
     pub tests: f64,
-    /// Unit roundoff of the way from a place or a direction to its cell.
+    /// Unit roundoff of the way from a place or a direction to its cell; that of `f32` for the cells of the grid, through which
+    /// devices walk so at every tier.
     pub lookups: f64,
 }
 

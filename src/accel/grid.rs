@@ -10,8 +10,9 @@ use super::lists::{Binning, Lists};
 const MAX_ACROSS: f64 = 512.0;
 /// What is added on each side of a sphere, in cells, for the walk's own rounding.
 const CELL_MARGIN: f64 = 4e-3;
-/// Rounding errors of a place on a ray, relative to the greatest coordinate: some six operations on differences of two places.
-const ERROR_STEPS: f64 = 16.0;
+/// Rounding errors of the place where a ray enters, relative to the greatest coordinate: some six operations on differences of two
+/// places, each of them as large as two such coordinates along each axis, and some more.
+const PLACE_STEPS: f64 = 16.0;
 /// Spheres outside the cells at the most: every ray is tested against each of them.
 const MAX_LARGE: usize = 16;
 /// A sphere this many times larger than the typical one does not belong into cells made for that.
@@ -74,7 +75,7 @@ impl Grid {
             let cells = (size / edge).ceil().clamp(DVec3::ONE, DVec3::splat(MAX_ACROSS));
             let per_unit = cells / size;
             let per_unit = DVec3::from_array(per_unit.to_array().map(|x| f64::from((x as f32).next_down())));
-            let margin = DVec3::splat(CELL_MARGIN) + per_unit * (ERROR_STEPS * lookups * enclosure.magnitude);
+            let margin = DVec3::splat(CELL_MARGIN) + per_unit * (PLACE_STEPS * lookups * enclosure.magnitude);
             let grid = Cells { enclosure, is_large: large.clone(), low, per_unit, cells: cells.as_uvec3(), margin };
             if cells == DVec3::ONE || grid.boxes() <= limit {
                 return Self { low, per_unit, cells: grid.cells, lists: Lists::build(&grid) };

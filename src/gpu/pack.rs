@@ -11,7 +11,7 @@ use super::layout::{Layout, ListValues, ParamValues, ShapeValues, double, single
 use super::shader::Kernel;
 use crate::accel::{Acceleration, Lists};
 use crate::camera::{Camera, NEAR_T_MIN};
-use crate::effects::{Effect, Effects};
+use crate::effects::{Effect, EffectSet, Effects};
 use crate::geometry::{Ellipsoid, ellipsoid, ellipsoids, shape_indices};
 use crate::scene::{Light, Scene};
 use crate::settings::{Secondary, Settings};
@@ -148,6 +148,11 @@ impl<'a> Packed<'a> {
     }
 }
 
+/// Vectors of a material, as `shaders/many.wgsl` has it: all three, or all but the way out of object space.
+pub(super) fn material_vectors(effects: EffectSet) -> usize {
+    if effects.has(Effect::Ellipsoids) { 3 } else { 2 }
+}
+
 fn pack<'a, L: Layout + 'a>(
     scene: &'a Scene,
     settings: &Settings,
@@ -204,8 +209,7 @@ fn pack<'a, L: Layout + 'a>(
             })
         })
     };
-    // All, or all but the last vector.
-    let material_size = size_of::<L::Material>() / 3 * if true_axes { 3 } else { 2 };
+    let material_size = size_of::<L::Material>() / 3 * material_vectors(effects.set);
     Packed {
         params: Contents::new(1, move |_| L::params(&params)),
         shapes: halves(false),

@@ -5,6 +5,7 @@ use std::num::NonZeroU32;
 use super::device::Gpu;
 use super::error::Error;
 use super::kernel_cache::KernelCache;
+use super::pack::material_vectors;
 use super::shader::{Kernel, Module, Places, Slots, Storage, Textures, Variant, Walk};
 use super::spirv::Parsed;
 use super::upload::texel_format;
@@ -78,6 +79,8 @@ impl Specialisation {
         };
         let entries = grid.lists.entries.len() as f64;
         let walk = match NonZeroU32::new(tuning.paths) {
+            // There are trees instead.
+            _ if self.refraction.is_some() => Walk::AtOnce,
             _ if !self.effects.has(Effect::Reflections) || entries < tuning.in_place_below => Walk::InPlace,
             Some(paths) if places != Places::Large && entries >= tuning.in_turn_from => Walk::InTurn(paths),
             _ => Walk::AtOnce,
@@ -128,7 +131,8 @@ impl Specialisation {
         }
         if self.storage != Storage::Ranges {
             constants.push(("LIGHT_COUNT", f64::from(self.lights)));
-            constants.push(("MATERIAL", 2.0 + on(Effect::Ellipsoids)));
+            constants.push(("MATERIAL", material_vectors(self.effects) as f64));
+            constants.push(("SHAPE_ENDS", f64::from(self.reads_shape_ends())));
         }
         constants
     }
@@ -136,6 +140,11 @@ impl Specialisation {
     /// Bytes that keep a path.
     pub(super) fn path_size(&self) -> u64 {
         self.path_vectors() * if self.kernel.is_double() { 32 } else { 16 }
+    }
+
+    /// Bytes of the colour of a sample.
+    pub(super) fn color_size(&self) -> u64 {
+        if self.kernel.is_double() { 32 } else { 16 }
     }
 
     /// Whether paths are kept from bounce to bounce.
@@ -228,7 +237,7 @@ pub(super) struct Bounce {
 #[derive(Debug)]
 pub(super) struct Stages {
     pub(super) see: Stage,
-    /// Where there are reflections.
+    /// Where paths are kept.
     pub(super) bounce: Option<Bounce>,
     /// From samples to pixels, where there are several a pixel.
     pub(super) resolve: Option<Stage>,
@@ -278,8 +287,13 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
     // A driver compiles a kernel on the thread that asks for it: side by side. The largest one goes here, since allocating is
     // cheapest on the main thread.
     std::thread::scope(|scope| {
-        let see = scope.spawn(|| kernel(see_entry, &primary));
-        let bounce = specialisation.keeps_paths().then(|| {
+        let see = || kernel(see_entry, &primary);
+        if !specialisation.keeps_paths() {
+            let resolve = (specialisation.samples > 1).then(resolve).transpose()?;
+            return Ok(Stages { see: see()?, bounce: None, resolve });
+        }
+        let see = scope.spawn(see);
+        let bounce = (|| {
             let bounce = if let Walk::InTurn(_) = specialisation.walk {
                 let shade = scope.spawn(|| kernel(SHADE_PATHS, &[(11, vectors), (22, words)]));
                 let walk = kernel(WALK_PATHS, &[&[(11, vectors), (23, Texels(1))][..], copies].concat())?;
@@ -288,9 +302,9 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
                 Bounce { begin: between()?, walk: kernel(WALK_PATHS, &[(11, vectors)])?, shade: None }
             };
             Ok::<_, Error>(bounce)
-        });
+        })();
         let resolve = (specialisation.samples > 1).then(resolve);
-        Ok(Stages { see: joined(see)?, bounce: bounce.transpose()?, resolve: resolve.transpose()? })
+        Ok(Stages { see: joined(see)?, bounce: Some(bounce?), resolve: resolve.transpose()? })
     })
 }
 

@@ -239,7 +239,7 @@ impl<'a> GpuRenderer<'a> {
         rgb.par_chunks_mut(row_bytes).for_each(|row| row.as_chunks_mut::<3>().0.fill(background));
 
         let mut tiles = self.cover.covered(first, count);
-        tiles.sort_by_key(|&tile| curve(tile));
+        tiles.sort_by_cached_key(|&tile| curve(tile));
         let mut not_finite = 0;
         let mut rest = tiles.as_slice();
         while !rest.is_empty() {
@@ -286,7 +286,8 @@ impl<'a> GpuRenderer<'a> {
         let info = &self.gpu.info;
         let specialisation = &self.inputs.specialisation;
         let path = 2 * specialisation.path_size() * u64::from(specialisation.keeps_paths());
-        let tile_bytes = TILE_PIXELS as u64 * self.samples * path.max(4);
+        let color = if self.samples > 1 { specialisation.color_size() } else { 4 };
+        let tile_bytes = TILE_PIXELS as u64 * self.samples * path.max(color);
         let bytes = MAX_PATH_BYTES.min(info.max_storage_binding).min(info.max_buffer);
         // Paths take a workgroup for so many of them.
         let groups =
@@ -442,7 +443,6 @@ impl Work {
         let pixels = Readable::new(gpu, pixel_count);
         let ray_counts = Readable::new(gpu, if specialisation.count_rays { slots } else { 1 });
         let paths = specialisation.path_size() * if specialisation.keeps_paths() { slots } else { 1 };
-        let color_size = if specialisation.kernel.is_double() { 32 } else { 16 };
         let paths = [0, 1].map(|_| empty_texels(gpu, paths, 4));
         let in_turn = matches!(specialisation.walk, Walk::InTurn(_));
         let hits = empty_texels(gpu, if in_turn { 4 * slots } else { 4 }, 1);
@@ -452,7 +452,7 @@ impl Work {
         };
         let stage = empty(STAGE_SIZE, storage | copied);
         let workgroups = empty(WORKGROUPS_SIZE, storage | wgpu::BufferUsages::INDIRECT);
-        let colors = stages.resolve.as_ref().map(|_| empty(slots * color_size, storage));
+        let colors = stages.resolve.as_ref().map(|_| empty(slots * specialisation.color_size(), storage));
         let results = colors.as_ref().unwrap_or(&pixels.buffer);
         let mut all = resources.to_vec();
         let mut bind = |binding, buffer: &wgpu::Buffer| all.push((binding, Resource::Buffer(buffer.clone())));

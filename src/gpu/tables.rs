@@ -35,9 +35,11 @@ pub(super) fn copy_resources(
         upload_texels(gpu, &Contents::gathered(&all, half.element_size(), entries), 4).map(Resource::Texels)
     };
     let [first, second] = &packed.shapes;
-    let none = Contents::packed::<u8>(&[]);
-    let ends = if specialisation.reads_shape_ends() { (second, &grid.lists.entries[..]) } else { (&none, &[][..]) };
-    Ok(vec![(24, texels(first, &grid.lists.entries)?), (25, texels(ends.0, ends.1)?)])
+    let entries = &grid.lists.entries;
+    let ends = if specialisation.reads_shape_ends() { &entries[..] } else { &[] };
+    let empty = Contents::packed::<u8>(&[]);
+    let second = if ends.is_empty() { &empty } else { second };
+    Ok(vec![(24, texels(first, entries)?), (25, texels(second, ends)?)])
 }
 
 /// The buffers and textures of the scene, by binding, beside those of the lists.

@@ -9,7 +9,7 @@ use super::shader::Textures;
 
 /// Bytes that a task packs at a time: whole elements of every size.
 const PIECE: usize = 192 << 9;
-/// Bytes on their way to a device with memory of its own.
+/// Bytes that are packed before they go on their way to the device, on which two times as many are at the most.
 const BAND: usize = 160 * PIECE;
 
 /// A buffer with `contents` and zeros up to `size`, which is no less.

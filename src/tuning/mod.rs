@@ -89,8 +89,7 @@ impl Tuning {
             first_dispatch_tests: 4e6,
         };
         // Its invocations do not wait for each other in the same way, and it wants more of them: measured on a discrete one, where
-        // 32 paths an invocation take five to eight times as long.
-        // What following mirrored rays in place takes there has not been measured.
+        // 32 paths an invocation take five to eight times as long. Following them in place was not measured on one.
         let hardware =
             Self { workgroup: 64, dispatch_ms: INTERACTIVE_MS, in_place_below: 0.0, in_turn_from: NEVER, ..software };
         // Storage textures and sampled ones take the same time there, too.

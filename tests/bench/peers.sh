@@ -162,6 +162,7 @@ for peer in $peers; do
 done
 
 if [ $# -eq 0 ]; then
+    rm -rf "$folder/scenes"
     "$trueray" bench --families "${FAMILIES:-spheres}" --max-spheres "${MAX_SPHERES:-1000}" --write "$folder/scenes" 2>/dev/null
     # By size, not by name.
     set -- $(ls -rS "$folder/scenes"/*.txt)

@@ -73,7 +73,7 @@ fn random_scene(seed: u64) -> Scene {
     }
     let lights = match kind {
         12 => 40,
-        _ => random.bits() % 4,
+        _ => random.bits() % 6,
     };
     for index in 0..lights {
         // Far, among the spheres, inside one, on a surface.
@@ -144,7 +144,7 @@ fn the_device_leaves_out_nothing_at_any_tier() {
     let in_turn = Tuning { in_turn_from: 0.0, paths: 5, ..at_once };
     let kernels: Vec<_> = Tier::ALL.into_iter().filter_map(|tier| gpu.kernel(tier).ok()).collect();
     for kernel in kernels {
-        for seed in 0..140 {
+        for seed in 0..210 {
             let (scene, settings) = (random_scene(seed), settings_of(seed));
             gpu.set_tuning(at_once);
             let all = device(&gpu, kernel, &scene, &settings, Rounding::UNKNOWN);
@@ -222,11 +222,11 @@ fn a_walk_that_is_too_long_for_a_device_is_no_other_picture() {
 }
 
 /// The picture of `scene` with each way to walk: at once, in turn, in place.
-fn walked(gpu: &mut Gpu, scene: &Scene) -> [Vec<u8>; 3] {
+fn walked(gpu: &mut Gpu, scene: &Scene, settings: &Settings) -> [Vec<u8>; 3] {
     let own = gpu.tuned.tuning;
     let pictures = [(0.0, 1e9), (0.0, 0.0), (1e9, 1e9)].map(|(in_place_below, in_turn_from)| {
         gpu.set_tuning(Tuning { in_place_below, in_turn_from, ..own });
-        device(gpu, Kernel::Tier(Tier::Fast), scene, &Settings::classic(), Rounding::SINGLE)
+        device(gpu, Kernel::Tier(Tier::Fast), scene, settings, Rounding::SINGLE)
     });
     gpu.set_tuning(own);
     pictures
@@ -238,7 +238,7 @@ fn long_walks_in_turn_are_walked_at_once_instead() {
     let Some(mut gpu) = crate::support::gpu("long_walks_in_turn_are_walked_at_once_instead") else { return };
     let mut scene = mirrored(6000);
     (scene.width, scene.height) = (64, 64);
-    let [at_once, in_turn, in_place] = walked(&mut gpu, &scene);
+    let [at_once, in_turn, in_place] = walked(&mut gpu, &scene, &Settings::classic());
     assert_eq!(first_difference(&at_once, &in_turn, &scene), None);
     assert_eq!(first_difference(&at_once, &in_place, &scene), None);
     // They are seen at all.
@@ -251,7 +251,25 @@ fn long_bounces_in_place_are_walked_at_once_instead() {
     let Some(mut gpu) = crate::support::gpu("long_bounces_in_place_are_walked_at_once_instead") else { return };
     let mut scene = mirrored(21_000);
     scene.spheres.iter_mut().for_each(|sphere| sphere.kr = 0.5);
-    let [at_once, in_turn, in_place] = walked(&mut gpu, &scene);
+    let [at_once, in_turn, in_place] = walked(&mut gpu, &scene, &Settings::classic());
     assert_eq!(first_difference(&at_once, &in_turn, &scene), None);
     assert_eq!(first_difference(&at_once, &in_place, &scene), None);
+}
+
+/// More bounces, each with many lights, than an invocation has turns for, in the samples of one pixel or in one of them.
+#[test]
+fn many_bounces_in_place_are_walked_at_once_instead() {
+    let Some(mut gpu) = crate::support::gpu("many_bounces_in_place_are_walked_at_once_instead") else { return };
+    let lights: String =
+        (0..60).map(|i| format!("LIGHT l{i} {} 1 -3 0.001 0.001 0.001\n", f64::from(i) / 20.0)).collect();
+    let mut scene =
+        scene_of(&format!("SPHERE s 0 0 -3 10 10 10 1 1 1 0.1 0.5 0 0.9 10\nAMBIENT 0.1 0.1 0.1\n{lights}"));
+    (scene.width, scene.height) = (8, 8);
+    for (samples, max_depth) in [(1, 900), (4, 60)] {
+        let settings = Settings { samples, max_depth, ..Settings::classic() };
+        let [at_once, in_turn, in_place] = walked(&mut gpu, &scene, &settings);
+        assert_eq!(first_difference(&at_once, &in_turn, &scene), None);
+        assert_eq!(first_difference(&at_once, &in_place, &scene), None);
+        assert!(at_once.iter().any(|&level| level > 50));
+    }
 }

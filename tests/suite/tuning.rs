@@ -14,7 +14,7 @@ use trueray::tuning::{Class, KNOBS, Tuning};
 use crate::support::{gpu, scene, scene_files};
 
 /// Each number at its least, and at its greatest; and some in between.
-fn tunings() -> [Tuning; 4] {
+fn tunings() -> [Tuning; 5] {
     let class = Tuning::of(Class::Software);
     let ends = [0, 1].map(|end| {
         let mut tuning = class;
@@ -24,8 +24,9 @@ fn tunings() -> [Tuning; 4] {
         tuning
     });
     let density = Density { grid_cells: 0.3, light_entries: 1.0, ..class.density };
-    let in_turn = Tuning { paths: 64, in_turn_from: 0.0, stored_tables: false, ..class };
-    [ends[0], ends[1], Tuning { workgroup: 48, density, ..class }, in_turn]
+    let in_turn = Tuning { paths: 256, in_place_below: 0.0, in_turn_from: 0.0, stored_tables: false, ..class };
+    let at_once = Tuning { workgroup: 256, in_place_below: 0.0, in_turn_from: 1e9, ..class };
+    [ends[0], ends[1], Tuning { workgroup: 48, density, ..at_once }, in_turn, at_once]
 }
 
 fn render(gpu: &Gpu, tier: Tier, scene: &Scene, settings: &Settings) -> Vec<u8> {
