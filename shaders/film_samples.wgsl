@@ -18,9 +18,9 @@ fn see_pixel(pixel: vec2<u32>, first_slot: u32) {
             break;
         }
     }
-    // One that is cut stands for all that follow.
+    // The first that was left out stands for all: it has no path that could finish it later.
     if sample < SAMPLES * SAMPLES {
         is_cut = true;
-        finish(first_slot, vec3r());
+        finish(first_slot + sample, vec3r());
     }
 }

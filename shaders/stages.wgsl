@@ -1,8 +1,5 @@
 // A picture in stages, each over those alone that need it: see_tiles of slots_tiles.wgsl or see_samples of slots_list.wgsl, then,
 // where paths are kept, walk_paths of walk_at_once.wgsl or walk_in_turn.wgsl for each bounce.
-//
-// All lanes of a workgroup go the same way, whether they see something or not: software devices execute both sides of a branch
-// anyway.
 
 // How many paths there are; stage.wgsl goes from one bounce to the next.
 struct Stage {

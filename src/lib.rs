@@ -2,8 +2,8 @@
 //! reference.
 //!
 //! The data walk: scene text → [`scene::Scene`] → [`effects::Effects`] → lists of spheres ([`accel`]) → packed tables →
-//! composed WGSL and constants → SPIR-V of each kernel → stages of dispatches → rows of pixels → file. `cpu` and `gpu` never see each other; both
-//! read [`scene`], [`effects`], [`camera`], [`geometry`], [`accel`] and [`sampling`].
+//! composed WGSL and constants → SPIR-V of each kernel → stages of dispatches → rows of pixels → file. `cpu` and `gpu` never
+//! see each other; both read [`scene`], [`effects`], [`camera`], [`geometry`], [`accel`] and [`sampling`].
 
 pub mod accel;
 pub mod bench;

@@ -67,6 +67,11 @@ impl<'a> Contents<'a> {
         Self { count: all.len(), size: size_of::<T>(), write: Box::new(write) }
     }
 
+    /// No elements.
+    pub(super) fn none() -> Self {
+        Self::packed::<u8>(&[])
+    }
+
     /// The elements of several parts, one part after another.
     fn joined(parts: Vec<Contents<'a>>) -> Self {
         let count = parts.iter().map(|part| part.count).sum();

@@ -278,9 +278,12 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
         stage(gpu, &module, "begin_bounce", &group, &[(12, ReadWrite), (16, ReadWrite)])
     };
     let resolve = || {
+        if specialisation.samples == 1 {
+            return Ok(None);
+        }
         let module = parsed(&Module::resolve(specialisation.kernel))?;
         let constants = [("SAMPLES", f64::from(specialisation.samples))];
-        stage(gpu, &module, "resolve", &constants, &[(0, Uniform), (7, Read), (15, ReadWrite)])
+        stage(gpu, &module, "resolve", &constants, &[(0, Uniform), (7, Read), (15, ReadWrite)]).map(Some)
     };
     let copies: &[(u32, Access)] =
         if specialisation.variant().copies() { &[(24, vectors), (25, vectors)] } else { &[] };
@@ -289,22 +292,20 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
     std::thread::scope(|scope| {
         let see = || kernel(see_entry, &primary);
         if !specialisation.keeps_paths() {
-            let resolve = (specialisation.samples > 1).then(resolve).transpose()?;
-            return Ok(Stages { see: see()?, bounce: None, resolve });
+            return Ok(Stages { see: see()?, bounce: None, resolve: resolve()? });
         }
         let see = scope.spawn(see);
-        let bounce = (|| {
-            let bounce = if let Walk::InTurn(_) = specialisation.walk {
+        let bounce = || {
+            if let Walk::InTurn(_) = specialisation.walk {
                 let shade = scope.spawn(|| kernel(SHADE_PATHS, &[(11, vectors), (22, words)]));
                 let walk = kernel(WALK_PATHS, &[&[(11, vectors), (23, Texels(1))][..], copies].concat())?;
-                Bounce { begin: between()?, walk, shade: Some(joined(shade)?) }
+                Ok(Bounce { begin: between()?, walk, shade: Some(joined(shade)?) })
             } else {
-                Bounce { begin: between()?, walk: kernel(WALK_PATHS, &[(11, vectors)])?, shade: None }
-            };
-            Ok::<_, Error>(bounce)
-        })();
-        let resolve = (specialisation.samples > 1).then(resolve);
-        Ok(Stages { see: joined(see)?, bounce: Some(bounce?), resolve: resolve.transpose()? })
+                Ok(Bounce { begin: between()?, walk: kernel(WALK_PATHS, &[(11, vectors)])?, shade: None })
+            }
+        };
+        let (bounce, resolve) = (bounce(), resolve());
+        Ok(Stages { see: joined(see)?, bounce: Some(bounce?), resolve: resolve? })
     })
 }
 

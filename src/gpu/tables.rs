@@ -37,8 +37,8 @@ pub(super) fn copy_resources(
     let [first, second] = &packed.shapes;
     let entries = &grid.lists.entries;
     let ends = if specialisation.reads_shape_ends() { &entries[..] } else { &[] };
-    let empty = Contents::packed::<u8>(&[]);
-    let second = if ends.is_empty() { &empty } else { second };
+    let none = Contents::none();
+    let second = if ends.is_empty() { &none } else { second };
     Ok(vec![(24, texels(first, entries)?), (25, texels(second, ends)?)])
 }
 
@@ -53,7 +53,7 @@ pub(super) fn scene_resources(
     let filled =
         |contents: &Contents, usage| upload(gpu, contents, usage, contents.len().max(64)).map(Resource::Buffer);
     let texels = |contents: &Contents| upload_texels(gpu, contents, 4).map(Resource::Texels);
-    let none = Contents::packed::<u8>(&[]);
+    let none = Contents::none();
     let second_half = |half| texels(if specialisation.reads_shape_ends() { half } else { &none });
     let mut resources = vec![
         (0, filled(&packed.params, uniform)?),

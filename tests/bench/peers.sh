@@ -10,7 +10,8 @@
 # counts it, at the rounding of levels that the program has.
 #
 # From the environment: RUNS (5), THREADS (2, at most the number of cores), RES (1920x1080), FAMILIES (spheres) and MAX_SPHERES
-# (1000) of the scenes, PRECISION (auto), DEVICE (auto), TRUERAY (target/release/trueray), KEEP (a folder that keeps pictures and exported scenes).
+# (1000) of the scenes, PRECISION (auto), DEVICE (auto), TRUERAY (target/release/trueray), KEEP (a folder that keeps pictures and
+# exported scenes).
 set -eu
 
 root=$(cd "$(dirname "$0")/../.." && pwd)
