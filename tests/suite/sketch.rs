@@ -7,8 +7,10 @@ use trueray::viewer::{PLACES, Places, SAMPLES, SampleColors};
 use crate::support::{gpu, say_skipped};
 use crate::view::{Page, SCENE, Work, rendered, scene};
 
-/// Large enough that no CPU renders all of it in a frame.
-const SIZE: &str = r#"{"do":"choose","res":"1500x1100"}"#;
+/// Large enough that a CPU does not render all of it in a frame, and small enough to be sampled at its full size.
+const WIDTH: u32 = 3000;
+const HEIGHT: u32 = 2200;
+const SIZE: &str = r#"{"do":"choose","res":"3000x2200"}"#;
 
 /// Whether the reference itself may render all of it in a frame.
 fn has_many_cores() -> bool {
@@ -75,13 +77,13 @@ fn a_moving_picture_has_samples_of_render_and_the_rest_follows() {
             let density = density(&words);
             assert_eq!(density.fovea.is_some(), economy.contains("foveated"));
             if let Some(fovea) = density.fovea {
-                assert_eq!(fovea.center, [375.0, 825.0]);
+                assert_eq!(fovea.center, [0.25 * f64::from(WIDTH), 0.75 * f64::from(HEIGHT)]);
             }
-            let samples = Samples::new((1500, 1100), &density);
+            let samples = Samples::new((WIDTH, HEIGHT), &density);
             assert_eq!(words["sampled"]["pixels"], samples.pixels.len());
             let at = |rgb: &[u8], index: usize| [rgb[3 * index], rgb[3 * index + 1], rgb[3 * index + 2]];
             for &[x, y] in &samples.pixels {
-                let index = y as usize * 1500 + x as usize;
+                let index = (y * WIDTH + x) as usize;
                 assert_eq!(page.ways[index], [0, 0]);
                 assert_eq!(at(&page.rgb, index), at(&expected, index), "({x}, {y}), on the device: {on_device}");
             }
