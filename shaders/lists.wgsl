@@ -100,10 +100,11 @@ fn light_list(light: u32, direction: vec3r, is_asked: bool) -> vec2<u32> {
     let face = face_of(light * 6u + axis * 2u + select(0u, 1u, turned.x < real(0.0)));
     let place = (turned.yz * (real(1.0) / abs(turned.x)) - face.low) * face.per_unit;
     let cell = vec2<u32>(place);
+    var list = vec2<u32>();
     if is_asked && place.x >= real(0.0) && place.y >= real(0.0) && cell.x < face.cells.x && cell.y < face.cells.y {
-        return cell_at(face.first + cell.y * face.cells.x + cell.x);
+        list = cell_at(face.first + cell.y * face.cells.x + cell.x);
     }
-    return vec2<u32>();
+    return list;
 }
 
 // Whether a sphere, and so all that follow in a light's list, lies too far from the light, at t = 1, to stand before a point at

@@ -40,19 +40,17 @@ fn power_of_two(k: i32) -> real {
     return real(low) * real(high);
 }
 
-// e^x for x <= 0: x = k ln 2 + r, |r| <= ln 2 / 2, then the Taylor series of e^r to r^14 / 14!, which leaves 2e-18.
+// e^x for x <= 0, and 0 below 1e-73, which no picture sees: x = k ln 2 + r, |r| <= ln 2 / 2, then the Taylor series of e^r to r^14 / 14!, which leaves 2e-18.
 fn exponential(x: real) -> real {
-    if !(x > -170.0lf) {
-        // Below 1e-73; no picture sees it.
-        return 0.0lf;
-    }
-    let k = i32(f32(x) * 1.442695 - 0.5);
-    let r = (x - real(k) * LN_2_HIGH) - real(k) * LN_2_LOW;
+    let is_seen = x > -170.0lf;
+    let power = select(0.0lf, x, is_seen);
+    let k = i32(f32(power) * 1.442695 - 0.5);
+    let r = (power - real(k) * LN_2_HIGH) - real(k) * LN_2_LOW;
     var sum = 1.0lf;
     for (var i = 14; i >= 1; i--) {
         sum = 1.0lf + r * sum / real(i);
     }
-    return sum * power_of_two(k);
+    return select(0.0lf, sum * power_of_two(k), is_seen);
 }
 
 // ln(1 - d) for d in [0, 1). 1 - d = 2^k m with m in [0.7, 1.4], ln m = 2 atanh(s), s = (m - 1)/(m + 1); for small d

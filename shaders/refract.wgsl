@@ -46,13 +46,14 @@ struct Refracted {
 // unit length; with the wall that it leaves.
 fn refraction_ray(ray: Ray, surface: Surface) -> Refracted {
     let snell = snell_at(surface);
+    var refracted = Refracted(reflection_ray(surface), surface.own);
     // Ordered comparison: indices beyond the range of the scalar refract nothing.
-    if !(snell.square > real(0.0)) {
-        return Refracted(reflection_ray(surface), surface.own);
+    if snell.square > real(0.0) {
+        let offset = surface.normal * (snell.bend * sqrt(ray.a));
+        let own = Own(surface.own.shape, !surface.own.inside, surface.own.local);
+        refracted = Refracted(bent_ray(ray, surface.position, snell.ratio, offset), own);
     }
-    let offset = surface.normal * (snell.bend * sqrt(ray.a));
-    let own = Own(surface.own.shape, !surface.own.inside, surface.own.local);
-    return Refracted(bent_ray(ray, surface.position, snell.ratio, offset), own);
+    return refracted;
 }
 
 // Own spheres of refraction rays are met by their analytic other root in either convention.

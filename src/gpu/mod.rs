@@ -5,6 +5,7 @@ mod device;
 pub mod drivers;
 mod echo;
 mod error;
+mod inline;
 pub mod kernel_cache;
 pub mod layout;
 mod pack;

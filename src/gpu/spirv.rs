@@ -4,14 +4,16 @@
 //! WGSL lets a driver fuse, reorder and leave out operations, and drivers do so differently where a kernel differs in something
 //! else. SPIR-V has a decoration that forbids it, which naga does not write.
 
-use std::num::NonZeroU32;
-
 use naga::back::spv;
 use naga::compact::{KeepUnused, compact};
 use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
-use naga::{Block, Expression, Handle, Literal, ResourceBinding, ShaderStage, Statement};
+use naga::{Block, Expression, Handle, Literal, ResourceBinding, ShaderStage, Span, Statement};
+use rspirv::binary::Assemble;
+use rspirv::dr::{self, Operand};
+use rspirv::spirv::{Decoration, Op};
 
+use super::inline::inline_calls;
 use super::shader::Module;
 
 /// A module that is parsed.
@@ -53,6 +55,7 @@ impl Parsed {
             // Names would keep what has them alive.
             function.named_expressions.clear();
             function.body = without_dead(std::mem::take(&mut function.body), &known);
+            join_returns(&mut function.body);
         }
         compact(&mut module, KeepUnused::No);
         Ok(module)
@@ -86,7 +89,10 @@ impl Parsed {
         };
         let entry = spv::PipelineOptions { shader_stage: ShaderStage::Compute, entry_point: entry_point.to_owned() };
         let words = spv::write_vec(&module, &info, &options, Some(&entry)).map_err(|error| error.to_string())?;
-        Ok(without_contraction(&words))
+        let mut module = dr::load_words(words).map_err(|error| error.to_string())?;
+        inline_calls(&mut module);
+        forbid_contraction(&mut module);
+        Ok(module.assemble())
     }
 }
 
@@ -123,43 +129,31 @@ fn without_dead(block: Block, known: &impl Fn(Handle<Expression>) -> Option<bool
     live
 }
 
-/// Words before the first instruction of a module.
-const HEADER: usize = 5;
-
-// Instructions and the decoration by their numbers in the SPIR-V specification, section 3.
-const OP_EXT_INST: u32 = 12;
-const OP_TYPES: std::ops::RangeInclusive<u32> = 19..=39;
-const OP_DECORATE: u32 = 71;
-const OP_FLOAT_ARITHMETIC: [u32; 9] = [
-    127, // OpFNegate
-    129, // OpFAdd
-    131, // OpFSub
-    133, // OpFMul
-    136, // OpFDiv
-    140, // OpFRem
-    142, // OpVectorTimesScalar
-    148, // OpDot
-    OP_EXT_INST,
-];
-const NO_CONTRACTION: u32 = 42;
-
-/// The module with the decoration `NoContraction` on the result of each operation on floating-point numbers.
-fn without_contraction(words: &[u32]) -> Vec<u32> {
-    let mut decorations = Vec::new();
-    let mut first_type = None;
-    let mut at = HEADER;
-    while let Some(length) = words.get(at).and_then(|word| NonZeroU32::new(word >> 16)) {
-        let operation = words[at] & 0xffff;
-        if first_type.is_none() && OP_TYPES.contains(&operation) {
-            first_type = Some(at);
+/// naga's front end lets each branch at the end of a function return by itself: once behind them instead, so that the function can
+/// be inlined. Whether `block` now ends with a return without a value.
+fn join_returns(block: &mut Block) -> bool {
+    if let Some(Statement::If { accept, reject, .. }) = block.last_mut()
+        && [&mut *accept, &mut *reject].map(join_returns) == [true; 2]
+    {
+        for branch in [accept, reject] {
+            branch.cull(branch.len() - 1..);
         }
-        if OP_FLOAT_ARITHMETIC.contains(&operation) {
-            // After the word of the instruction and that of the type.
-            decorations.extend([3 << 16 | OP_DECORATE, words[at + 2], NO_CONTRACTION]);
-        }
-        at += length.get() as usize;
+        block.push(Statement::Return { value: None }, Span::default());
     }
-    // Decorations go before types.
-    let (before, after) = words.split_at(first_type.unwrap_or(words.len()));
-    [before, &decorations, after].concat()
+    matches!(block.last(), Some(Statement::Return { value: None }))
+}
+
+/// The operations on floating-point numbers whose result is rounded.
+const ROUNDED: [Op; 9] =
+    [Op::FNegate, Op::FAdd, Op::FSub, Op::FMul, Op::FDiv, Op::FRem, Op::VectorTimesScalar, Op::Dot, Op::ExtInst];
+
+/// Decorates the result of each operation on floating-point numbers with `NoContraction`.
+fn forbid_contraction(module: &mut dr::Module) {
+    let instructions = module.functions.iter().flat_map(dr::Function::all_inst_iter);
+    let results = instructions.filter(|it| ROUNDED.contains(&it.class.opcode)).filter_map(|it| it.result_id);
+    let exact = |result| {
+        let operands = vec![Operand::IdRef(result), Operand::Decoration(Decoration::NoContraction)];
+        dr::Instruction::new(Op::Decorate, None, None, operands)
+    };
+    module.annotations.extend(results.map(exact));
 }

@@ -1,5 +1,6 @@
 //! The composed WGSL: every effect set is valid, and the structs are those of the host.
 
+use std::collections::HashSet;
 use std::num::NonZeroU32;
 
 use trueray::accel::{Acceleration, Lists};
@@ -16,6 +17,8 @@ use trueray::sampling::Fill;
 use trueray::settings::Settings;
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
+use rspirv::dr::{self, Operand};
+use rspirv::spirv::{Decoration, Op};
 
 /// Every kernel, with each way to find what secondary rays meet, and some of the ways to read tables and to walk paths.
 fn kinds() -> impl Iterator<Item = Variant> {
@@ -135,35 +138,72 @@ fn kernels_have_no_branch_that_is_known() {
     }
 }
 
-/// Each instruction of a SPIR-V module: its number and its words.
-fn instructions(words: &[u32]) -> impl Iterator<Item = (u32, &[u32])> {
-    let mut rest = &words[5..];
-    std::iter::from_fn(move || {
-        let first = *rest.first()?;
-        let (instruction, others) = rest.split_at((first >> 16) as usize);
-        rest = others;
-        Some((first & 0xffff, instruction))
+/// The SPIR-V of every kernel that the kinds have with these flags, with all effects and with few.
+fn every_kernel() -> impl Iterator<Item = (String, dr::Module)> {
+    let few = EffectSet::NONE.with(Effect::Diffuse, true);
+    let shapes = [None, NonZeroU32::new(3)]
+        .into_iter()
+        .flat_map(|refraction| [Slots::Tiles, Slots::List].map(|slots| (refraction, slots)));
+    let variants = shapes.flat_map(|(refraction, slots)| {
+        kinds().map(move |kind| Variant { refraction, slots, samples: slots == Slots::List, ..kind })
+    });
+    variants.flat_map(move |variant| {
+        let module = Parsed::new(&Module::render(&variant)).unwrap();
+        let bindings: Vec<u32> = (0..32).collect();
+        [(EffectSet::ALL, 7), (few, 0)]
+            .into_iter()
+            .flat_map(move |(effects, flags)| {
+                let constants = specialisation(&variant, effects, flags).constants();
+                let kernel = |entry| {
+                    let words = module.spirv(entry, &constants, &bindings).unwrap();
+                    (format!("{entry} of {variant:?}"), dr::load_words(words).unwrap())
+                };
+                entry_points(&variant).into_iter().map(kernel).collect::<Vec<_>>()
+            })
+            .collect::<Vec<_>>()
     })
 }
 
 /// No driver may round otherwise than it is written: one that fuses or reorders does so differently from kernel to kernel.
 #[test]
 fn no_operation_may_be_contracted() {
-    for variant in kinds() {
-        let module = Parsed::new(&Module::render(&variant)).unwrap();
-        let constants = specialisation(&variant, EffectSet::ALL, 7).constants();
-        let bindings: Vec<u32> = (0..32).collect();
-        for entry_point in entry_points(&variant) {
-            let words = module.spirv(entry_point, &constants, &bindings).unwrap();
-            let decorated = |(number, words): (u32, &[u32])| (number == 71 && words[2] == 42).then(|| words[1]);
-            let exact: std::collections::HashSet<u32> = instructions(&words).filter_map(decorated).collect();
-            // OpFNegate, OpFAdd, OpFSub, OpFMul, OpFDiv, OpFRem, OpVectorTimesScalar, OpDot.
-            let arithmetic =
-                instructions(&words).filter(|(number, _)| [127, 129, 131, 133, 136, 140, 142, 148].contains(number));
-            let results: Vec<u32> = arithmetic.map(|(_, words)| words[2]).collect();
-            assert!(results.len() > 20, "{entry_point}");
-            assert!(results.iter().all(|result| exact.contains(result)), "{entry_point}");
+    const ARITHMETIC: [Op; 8] =
+        [Op::FNegate, Op::FAdd, Op::FSub, Op::FMul, Op::FDiv, Op::FRem, Op::VectorTimesScalar, Op::Dot];
+    for (name, kernel) in every_kernel() {
+        let exact: HashSet<_> = kernel
+            .annotations
+            .iter()
+            .filter(|it| it.operands[1..] == [Operand::Decoration(Decoration::NoContraction)])
+            .map(|it| it.operands[0].unwrap_id_ref())
+            .collect();
+        let arithmetic = kernel.all_inst_iter().filter(|it| ARITHMETIC.contains(&it.class.opcode));
+        let results: Vec<_> = arithmetic.map(|it| it.result_id.unwrap()).collect();
+        assert!(results.len() > 20, "{name}");
+        assert!(results.iter().all(|result| exact.contains(result)), "{name}");
+    }
+}
+
+/// A kernel is one function, in which everything is defined once and before it is used.
+#[test]
+fn kernels_call_nothing() {
+    for (name, kernel) in every_kernel() {
+        assert_eq!(kernel.functions.len(), 1, "{name}");
+        let mut defined: HashSet<_> = kernel.global_inst_iter().filter_map(|it| it.result_id).collect();
+        let labels: Vec<_> = kernel.functions[0].blocks.iter().map(|block| block.label_id().unwrap()).collect();
+        // Branches go forward.
+        defined.extend(&labels);
+        assert_eq!(labels.iter().collect::<HashSet<_>>().len(), labels.len(), "{name}");
+        let (variables, rest): (Vec<_>, Vec<_>) = kernel.functions[0]
+            .all_inst_iter()
+            .filter(|it| it.class.opcode != Op::Label)
+            .partition(|it| it.class.opcode == Op::Variable);
+        for instruction in [variables, rest].concat() {
+            let ids = instruction.operands.iter().filter_map(Operand::id_ref_any).chain(instruction.result_type);
+            assert!(ids.into_iter().all(|id| defined.contains(&id)), "{name}: {instruction:?}");
+            assert!(instruction.result_id.is_none_or(|id| defined.insert(id)), "{name}: {instruction:?}");
         }
+        let bound = kernel.header.unwrap().bound;
+        assert!(defined.iter().all(|&id| id < bound), "{name}");
     }
 }
 
