@@ -89,6 +89,30 @@ impl Camera {
         (self.window.top - y) / (self.window.top - self.window.bottom) * f64::from(self.height)
     }
 
+    /// Where a pixel's first and last sample are, in pixel widths from its left edge.
+    pub fn samples_across(&self) -> [f64; 2] {
+        self.samples_from(self.offset.0)
+    }
+
+    /// Likewise in pixel heights from its top edge.
+    pub fn samples_down(&self) -> [f64; 2] {
+        self.samples_from(self.offset.1)
+    }
+
+    fn samples_from(&self, offset: f64) -> [f64; 2] {
+        let side = f64::from(self.samples);
+        [offset / side, (side - 1.0 + offset) / side]
+    }
+
+    /// More than how far from their places samples can be once the directions of their rays are rounded to `f32`, in pixel widths
+    /// and heights: some unit roundoffs of the greatest coordinates that such a direction is the sum of.
+    pub fn rounding(&self) -> [f64; 2] {
+        let Window { left, right, bottom, top, near } = self.window;
+        let length = left.abs().max(right.abs()) + bottom.abs().max(top.abs()) + near;
+        let of = |size: u32, extent: f64| 2.0_f64.powi(-21) * length / extent.abs() * f64::from(size);
+        [of(self.width, right - left), of(self.height, top - bottom)]
+    }
+
     /// Side k of the grid of samples in a pixel.
     pub fn samples(&self) -> u32 {
         self.samples

@@ -29,8 +29,8 @@ impl Bounds {
         let depth = half_z.length();
         let across = slopes([x, z], [half_x, half_z], depth, near)?;
         let down = slopes([y, z], [half_y, half_z], depth, near)?;
-        let columns = pixel_range(across.map(|slope| camera.column_of(slope * near)), camera.width())?;
-        let rows = pixel_range(down.map(|slope| camera.row_of(slope * near)), camera.height())?;
+        let columns = columns_between(across, camera)?;
+        let rows = Pixels::down(camera).between(down.map(|slope| camera.row_of(slope * near)))?;
         let is_large = rows[1] - rows[0] > 3 * TILE && columns[1] - columns[0] > 3 * TILE;
         let whole = z + depth < -near;
         let ellipsoid = || Ellipsoid::with_axes(center, semi_axes);
@@ -43,12 +43,9 @@ impl Bounds {
         let Some(outline) = &self.outline else {
             return self.columns;
         };
-        // The same margin as that of the rows.
-        let margin = 1.0 + f64::from(camera.height()) / 32768.0;
-        let rows = [f64::from(first) - margin, f64::from(end) + margin];
+        let rows = Pixels::down(camera).samples([first, end - 1]);
         let slopes = outline.across(rows.map(|row| camera.y_at(row) / camera.near()));
-        let columns = slopes.map(|slopes| slopes.map(|slope| camera.column_of(slope * camera.near())));
-        match columns.and_then(|columns| pixel_range(columns, camera.width())) {
+        match slopes.and_then(|slopes| columns_between(slopes, camera)) {
             // Never beyond the rectangle, which rounding could make it, and never empty, which only rounding leaves it.
             Some([left, right]) if left <= self.columns[1] && right >= self.columns[0] => {
                 [left.max(self.columns[0]), right.min(self.columns[1])]
@@ -115,15 +112,52 @@ impl Outline {
     }
 }
 
-/// The pixels within one of a range, cut to the picture.
-fn pixel_range([a, b]: [f64; 2], size: u32) -> Option<[u32; 2]> {
-    // A pixel on each side for where the sample lies, one in 2¹⁶ for f32 rays, which are good to some 2⁻²².
-    let margin = 1.0 + (f64::from(size) + a.abs().max(b.abs())) / 65536.0;
-    let (low, high) = (a.min(b) - margin, a.max(b) + margin);
-    // NaN comes from products beyond the range of f64: then the bound is left open.
-    let low = if low.is_nan() { 0.0 } else { low };
-    let high = if high.is_nan() { f64::from(size) } else { high };
-    (high >= 0.0 && low < f64::from(size)).then(|| [low.max(0.0) as u32, (high as u32).min(size - 1)])
+/// The columns of pixels that have samples between two slopes x/−z.
+fn columns_between(slopes: [f64; 2], camera: &Camera) -> Option<[u32; 2]> {
+    Pixels::across(camera).between(slopes.map(|slope| camera.column_of(slope * camera.near())))
+}
+
+/// The pixels of a picture in one direction.
+struct Pixels {
+    count: u32,
+    /// Where a pixel's first and last sample are.
+    samples: [f64; 2],
+    /// How far off they can be.
+    rounding: f64,
+}
+
+impl Pixels {
+    fn across(camera: &Camera) -> Self {
+        Self { count: camera.width(), samples: camera.samples_across(), rounding: camera.rounding()[0] }
+    }
+
+    fn down(camera: &Camera) -> Self {
+        Self { count: camera.height(), samples: camera.samples_down(), rounding: camera.rounding()[1] }
+    }
+
+    /// More than the rounding of places between `a` and `b`: beside that of the rays, of which `f32` makes some 2⁻²² of the place,
+    /// what the places themselves have gone through.
+    fn margin(&self, [a, b]: [f64; 2]) -> f64 {
+        self.rounding + (f64::from(self.count) + a.abs().max(b.abs())) / 65536.0
+    }
+
+    /// Where samples of the first of these pixels begin and those of the last end.
+    fn samples(&self, pixels: [u32; 2]) -> [f64; 2] {
+        let [first, last] = pixels.map(f64::from);
+        let margin = self.margin([first, last]);
+        [first + self.samples[0] - margin, last + self.samples[1] + margin]
+    }
+
+    /// The pixels that have a sample between two places; none where no pixel has.
+    fn between(&self, places: [f64; 2]) -> Option<[u32; 2]> {
+        let [a, b] = places;
+        let margin = self.margin(places);
+        let (low, high) = (a.min(b) - margin - self.samples[1], a.max(b) + margin - self.samples[0]);
+        // NaN comes from products beyond the range of f64: then the bound is left open.
+        let low = if low.is_nan() { 0.0 } else { low.max(0.0).ceil() };
+        let high = if high.is_nan() { f64::INFINITY } else { high.floor() }.min(f64::from(self.count - 1));
+        (low <= high).then_some([low as u32, high as u32])
+    }
 }
 
 /// Least and greatest x/(−z) where an ellipsoid around (x, z) lies beyond z = −near; none where it does not.

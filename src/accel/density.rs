@@ -12,6 +12,8 @@ const MAX_LIGHT_ENTRIES: f64 = (1 << 24) as f64;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Density {
+    /// Spheres in the list of a tile of the picture, on average, from which on tiles become smaller.
+    pub longest_tile: f64,
     /// Entries for each sphere in the lists of a light, roughly.
     pub light_entries: f64,
     /// Likewise where there are many spheres.
@@ -24,8 +26,13 @@ pub struct Density {
 
 impl Density {
     /// What is best on the CPU, for the reference and for lavapipe alike.
-    pub const DEFAULT: Self =
-        Self { light_entries: 12.0, light_entries_of_many: 3.0, grid_cells: 3.0, grid_cells_of_many: 1.5 };
+    pub const DEFAULT: Self = Self {
+        longest_tile: 12.0,
+        light_entries: 12.0,
+        light_entries_of_many: 3.0,
+        grid_cells: 3.0,
+        grid_cells_of_many: 1.5,
+    };
 
     /// How many entries the lists of one of so many lights may have, roughly.
     pub(super) fn entries_of_a_light(&self, spheres: usize, lights: usize) -> u64 {

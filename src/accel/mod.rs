@@ -57,7 +57,7 @@ impl Acceleration {
         let entries = density.entries_of_a_light(spheres, lights.len());
         let cells_per_sphere = density.cells_per_sphere(spheres);
         Self {
-            screen: ScreenLists::new(&enclosure, camera),
+            screen: ScreenLists::new(&enclosure, camera, density.longest_tile),
             lights: LightBuffer::new(&enclosure, if lit { &lights } else { &[] }, entries, rounding),
             grid: (effects.has(Effect::Reflections) || effects.has(Effect::Refraction))
                 .then(|| Grid::new(&enclosure, cells_per_sphere, rounding)),

@@ -10,12 +10,16 @@ use crate::tiles::{Bounds, TILE};
 /// Entries that all lists together may have, beside some per sphere: more make the tiles larger.
 const MAX_ENTRIES: u64 = 1 << 22;
 
+/// Edges of tiles, as powers of two, in pixels: the first that is tried, and the least.
+const FIRST_SHIFT: u32 = TILE.trailing_zeros();
+const LEAST_SHIFT: u32 = 1;
+
 /// Lists of spheres in ascending order of index, one for each tile of pixels.
 #[derive(Debug, Clone, Default)]
 pub struct ScreenLists {
     /// Tiles in reading order.
     pub lists: Lists,
-    /// A tile's edge is [`TILE`] pixels times this power of two.
+    /// A tile's edge in pixels is two to this power.
     pub shift: u32,
     /// Tiles in a row.
     pub across: u32,
@@ -33,31 +37,39 @@ struct Tiles<'a> {
 }
 
 impl ScreenLists {
-    /// Projects everything that `enclosure` has.
-    pub(super) fn new(enclosure: &Enclosure, camera: &Camera) -> Self {
+    /// Projects everything that `enclosure` has. Where tiles have more than `longest` spheres, on average, they become smaller.
+    pub(super) fn new(enclosure: &Enclosure, camera: &Camera, longest: f64) -> Self {
         let limit = MAX_ENTRIES.max(8 * enclosure.len() as u64);
         let bounds = |sphere: usize| {
             let Solid { center, semi_axes } = enclosure.solid(sphere);
             Bounds::new(center, semi_axes, camera)
         };
         let bounds: Vec<_> = (0..enclosure.len()).into_par_iter().map(bounds).collect();
-        let mut shift = 0;
-        loop {
-            let edge = TILE << shift;
-            let (across, down) = (camera.width().div_ceil(edge), camera.height().div_ceil(edge));
-            let tiles = Tiles { bounds: &bounds, camera, shift, across, down };
-            if across * down == 1 || u64::from(across) * u64::from(down) + tiles.rectangles() <= limit {
-                let (width, height) = (camera.width(), camera.height());
-                return Self { lists: Lists::build(&tiles), shift, across, width, height };
-            }
-            shift += 1;
+        let (width, height) = (camera.width(), camera.height());
+        let tiles = |shift: u32| {
+            let [across, down] = [width, height].map(|size| size.div_ceil(1 << shift));
+            Tiles { bounds: &bounds, camera, shift, across, down }
+        };
+        let mut chosen = tiles(FIRST_SHIFT);
+        let mut entries = chosen.rectangles();
+        while entries + chosen.cells() as u64 > limit && chosen.cells() > 1 {
+            chosen = tiles(chosen.shift + 1);
+            entries = chosen.rectangles();
         }
+        while chosen.shift > LEAST_SHIFT && entries as f64 > longest * chosen.cells() as f64 {
+            let smaller = tiles(chosen.shift - 1);
+            entries = smaller.rectangles();
+            if entries + smaller.cells() as u64 > limit {
+                break;
+            }
+            chosen = smaller;
+        }
+        Self { lists: Lists::build(&chosen), shift: chosen.shift, across: chosen.across, width, height }
     }
 
     /// The index of the tile that pixel (column `i`, row `j`) lies in.
     pub fn tile(&self, i: u32, j: u32) -> usize {
-        let edge = TILE << self.shift;
-        (j / edge) as usize * self.across as usize + (i / edge) as usize
+        (j >> self.shift) as usize * self.across as usize + (i >> self.shift) as usize
     }
 
     /// Which tiles have spheres.
@@ -88,33 +100,30 @@ impl Cover {
     /// How many tiles of [`TILE`] pixels any sphere may cover, or a few more.
     pub fn most(&self) -> u64 {
         let listed = self.has_spheres.iter().filter(|has| **has).count() as u64;
-        listed << (2 * self.shift)
+        listed << (2 * self.shift.saturating_sub(FIRST_SHIFT))
     }
 
     /// Top-left pixels of the tiles of [`TILE`] pixels that any sphere may cover, in rows `first` to `first + count`, in
     /// reading order; `first` is a multiple of [`TILE`].
     pub fn covered(&self, first: u32, count: u32) -> Vec<[u32; 2]> {
-        let edge = TILE << self.shift;
-        let tile = |x: u32, y: u32| (y / edge) as usize * self.across as usize + (x / edge) as usize;
         let rows = (first..(first + count).min(self.height)).step_by(TILE as usize);
         let places = rows.flat_map(|y| (0..self.width).step_by(TILE as usize).map(move |x| [x, y]));
-        places.filter(|&[x, y]| self.has_spheres[tile(x, y)]).collect()
+        // Those that have lists of their own, in each.
+        let parts = |first: u32, size: u32| (first..(first + TILE).min(size)).step_by(1 << self.shift);
+        let has = |&[x, y]: &[u32; 2]| parts(y, self.height).any(|y| parts(x, self.width).any(|x| self.has([x, y])));
+        places.filter(has).collect()
     }
-}
 
-impl Cover {
     /// Whether any sphere may cover the pixel in this column and row.
     pub fn has(&self, [x, y]: [u32; 2]) -> bool {
-        let edge = TILE << self.shift;
-        self.has_spheres[(y / edge) as usize * self.across as usize + (x / edge) as usize]
+        self.has_spheres[(y >> self.shift) as usize * self.across as usize + (x >> self.shift) as usize]
     }
 }
 
 impl Tiles<'_> {
     /// How many tiles the rectangles around the spheres have.
     fn rectangles(&self) -> u64 {
-        let edge = TILE << self.shift;
-        let span = |[first, last]: [u32; 2]| u64::from(last / edge - first / edge + 1);
+        let span = |[first, last]: [u32; 2]| u64::from((last >> self.shift) - (first >> self.shift) + 1);
         self.bounds.par_iter().flatten().map(|bounds| span(bounds.rows) * span(bounds.columns)).sum()
     }
 }
@@ -130,11 +139,11 @@ impl Binning for Tiles<'_> {
 
     fn visit(&self, rank: usize, emit: &mut impl FnMut(usize, usize)) {
         let Some(bounds) = &self.bounds[rank] else { return };
-        let edge = TILE << self.shift;
-        for row in bounds.rows[0] / edge..=bounds.rows[1] / edge {
-            let [left, right] = bounds.columns_in([row * edge, (row + 1) * edge], self.camera);
+        let [first, last] = bounds.rows.map(|row| row >> self.shift);
+        for row in first..=last {
+            let [left, right] = bounds.columns_in([row << self.shift, (row + 1) << self.shift], self.camera);
             let start = row as usize * self.across as usize;
-            emit(start + (left / edge) as usize, start + (right / edge) as usize);
+            emit(start + (left >> self.shift) as usize, start + (right >> self.shift) as usize);
         }
     }
 }

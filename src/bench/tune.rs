@@ -22,6 +22,7 @@ fn cases(knob: &Knob) -> &'static [(&'static str, usize)] {
     match knob.name {
         "light_entries" => &[("spheres", 100), ("spheres", 10_000)],
         "light_entries_of_many" => &[("spheres", 100_000)],
+        "longest_tile" => &[("spheres", 100_000)],
         "grid_cells" => &[("mirrors", 100), ("mirrors", 10_000)],
         "grid_cells_of_many" => &[("mirrors", 100_000)],
         "in_place_below" => &[("spheres", 10), ("mirrors", 100), ("mirrors", 1000), ("mirrors", 10_000)],

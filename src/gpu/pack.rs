@@ -260,8 +260,7 @@ pub(super) fn list_contents(accel: &Acceleration) -> [Contents<'_>; 2] {
 /// Where the shader finds the lists, of which the cells begin at these places.
 fn list_values(accel: &Acceleration, cell_bases: &[u32]) -> ListValues {
     let screen = ListValues {
-        // From pixels to tiles with lists.
-        screen_shift: TILE.trailing_zeros() + accel.screen.shift,
+        screen_shift: accel.screen.shift,
         screen_across: accel.screen.across,
         light_slack: accel.lights.slack,
         ..ListValues::default()

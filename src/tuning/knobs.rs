@@ -18,7 +18,7 @@ pub struct Knob {
 }
 
 /// All numbers of a tuning.
-pub static KNOBS: [Knob; 11] = [
+pub static KNOBS: [Knob; 12] = [
     Knob {
         name: "workgroup",
         limits: [1.0, 256.0],
@@ -53,6 +53,13 @@ pub static KNOBS: [Knob; 11] = [
         candidates: &[0.0, 1.0],
         get: |tuning| f64::from(u8::from(tuning.stored_tables)),
         set: |tuning, value| tuning.stored_tables = value >= 0.5,
+    },
+    Knob {
+        name: "longest_tile",
+        limits: [0.0, NEVER],
+        candidates: &[3.0, 6.0, 12.0, 24.0, NEVER],
+        get: |tuning| tuning.density.longest_tile,
+        set: |tuning, value| tuning.density.longest_tile = value,
     },
     Knob {
         name: "light_entries",

@@ -5,7 +5,7 @@ use std::process::Command;
 
 use glam::DVec3;
 use proptest::prelude::*;
-use trueray::accel::{Acceleration, Rounding};
+use trueray::accel::{Acceleration, Density, Rounding};
 use trueray::camera::Camera;
 use trueray::compare::{Difference, Explanation};
 use trueray::cpu::{Judge, Reference};
@@ -201,7 +201,9 @@ proptest! {
         size in [0.1..3.0, 0.1..3.0],
         flip in any::<[bool; 2]>(),
         (width, height) in (1_u32..200, 1_u32..150),
-        centered in any::<bool>(),
+        sampling in prop::sample::select(vec![Sampling::Corner, Sampling::BottomLeft, Sampling::Center]),
+        samples in 1_u32..4,
+        longest_tile in prop::sample::select(vec![0.0, 1.0, 1e9]),
     ) {
         let Ok(view) = View::new(DVec3::ZERO, Some(ahead.into()), up.into()) else { return Ok(()) };
         // The places above are those in the picture's axes, so that the spheres are mostly in view.
@@ -215,18 +217,19 @@ proptest! {
         let side = |low: f64, size: f64, flip| if flip { (low + size, low) } else { (low, low + size) };
         (scene.window.left, scene.window.right) = side(window[0], size[0], flip[0]);
         (scene.window.bottom, scene.window.top) = side(window[1], size[1], flip[1]);
-        let sampling = if centered { Sampling::Center } else { Sampling::Corner };
-        let settings = Settings { sampling, view, ..Settings::classic() };
+        let settings = Settings { sampling, samples, view, ..Settings::classic() };
+        let density = Density { longest_tile, ..Density::DEFAULT };
         let camera = Camera::new(&scene, &settings);
 
         for rounding in [Rounding::SINGLE, Rounding::COMPENSATED, Rounding::DOUBLE] {
-            let lists = Acceleration::new(&scene, &camera, EffectSet::ALL, rounding).screen;
-            for j in 0..height {
-                for i in 0..width {
+            let lists = Acceleration::with_density(&scene, &camera, EffectSet::ALL, rounding, &density).screen;
+            for j in 0..height * samples {
+                for i in 0..width * samples {
                     let ray = camera.column(i) + camera.row(j);
                     for (index, sphere) in scene.spheres.iter().enumerate() {
                         if sees(ray, sphere) {
-                            prop_assert!(lists.at(i, j).contains(&(index as u32)), "pixel {i} {j} sphere {index}");
+                            let listed = lists.at(i / samples, j / samples);
+                            prop_assert!(listed.contains(&(index as u32)), "sample {i} {j} sphere {index}");
                         }
                     }
                 }

@@ -1,7 +1,7 @@
 //! Lists of spheres leave out nothing: pictures are byte for byte those for which every list has every sphere.
 
 use glam::DVec3;
-use trueray::accel::Rounding;
+use trueray::accel::{Density, Rounding};
 use trueray::cpu::Reference;
 use trueray::effects::Effects;
 use trueray::gpu::{Choice, Gpu, GpuRenderer, Kernel};
@@ -14,7 +14,7 @@ use trueray::tuning::Tuning;
 use crate::support::scene_of;
 
 /// Kinds of scenes, each with its own difficulty.
-const KINDS: u64 = 14;
+const KINDS: u64 = 15;
 
 /// A random scene: its kind is `seed` modulo [`KINDS`].
 fn random_scene(seed: u64) -> Scene {
@@ -26,7 +26,7 @@ fn random_scene(seed: u64) -> Scene {
     let count = match kind {
         0 => random.bits() % 5,
         1 => 400,
-        2 => 1000,
+        2 | 14 => 1000,
         _ => 17 + random.bits() % 120,
     };
     let cluster: Vec<DVec3> = (0..4).map(|_| random.in_box(6.0)).collect();
@@ -50,6 +50,8 @@ fn random_scene(seed: u64) -> Scene {
             // A huge one below tiny ones.
             9 if index == 0 => (center, scale) = (DVec3::new(0.0, -1e4, -9.0), DVec3::splat(1e4 - 3.0)),
             9 | 10 => scale *= 0.1,
+            // As small as pixels, so that tiles become smaller, too.
+            14 => scale *= 0.05,
             // Touching: equal distances along shared tangents and in shared points.
             11 => (center, scale) = ((center / 2.0).round() * 2.0, DVec3::ONE),
             _ => {}
@@ -142,13 +144,17 @@ fn the_device_leaves_out_nothing_at_any_tier() {
     let at_once = Tuning { in_place_below: 0.0, in_turn_from: 1e9, ..gpu.tuned.tuning };
     let in_place = Tuning { in_place_below: 1e9, ..at_once };
     let in_turn = Tuning { in_turn_from: 0.0, paths: 5, ..at_once };
+    // Tiles as small as they can be, too.
+    let small = |tuning: Tuning| Tuning { density: Density { longest_tile: 0.0, ..tuning.density }, ..tuning };
     let kernels: Vec<_> = Tier::ALL.into_iter().filter_map(|tier| gpu.kernel(tier).ok()).collect();
     for kernel in kernels {
         for seed in 0..210 {
             let (scene, settings) = (random_scene(seed), settings_of(seed));
             gpu.set_tuning(at_once);
             let all = device(&gpu, kernel, &scene, &settings, Rounding::UNKNOWN);
-            gpu.set_tuning([at_once, in_place, in_turn][seed as usize % 3]);
+            gpu.set_tuning(
+                [small(at_once), in_place, in_turn, at_once, small(in_place), small(in_turn)][seed as usize % 6],
+            );
             let lists = device(&gpu, kernel, &scene, &settings, kernel.rounding());
             assert_eq!(first_difference(&all, &lists, &scene), None, "{kernel:?}, scene {seed}");
         }

@@ -384,7 +384,7 @@ fn the_device_reads_every_field_where_the_host_wrote_it() {
         let mut expected = expected.clone();
         expected[0].extend([single(accel.lights.slack), 40]);
         expected[0].extend(grid.low.to_array().map(single));
-        expected[0].push(3 + accel.screen.shift);
+        expected[0].push(accel.screen.shift);
         expected[0].extend(grid.per_unit.to_array().map(single));
         expected[0].push(accel.screen.across);
         expected[0].extend(grid.cells.to_array());
