@@ -175,6 +175,11 @@ pub(super) fn open_device(choice: &Choice) -> Result<Gpu, Error> {
 }
 
 impl DeviceOptions {
+    /// Whether a Vulkan device is asked for, or any that there is.
+    pub(super) fn uses_vulkan(&self) -> bool {
+        self.device != Choice::Cpu
+    }
+
     /// The tier that renders `scene` on `gpu`, or would on hardware where there is none.
     pub(super) fn selection(
         &self,

@@ -14,9 +14,10 @@ use super::stats::{Sampled, Stats};
 use crate::effects::Effects;
 use crate::engine::{Backend, Engine, render_bands, render_partial};
 use crate::film::{Format, PictureWriter, Target};
-use crate::gpu::Gpu;
+use crate::gpu::{Ahead, Gpu};
 use crate::precision::Selection;
 use crate::sampling::Samples;
+use crate::scene::Scene;
 use crate::settings::Settings;
 
 /// Arguments of `trueray render`.
@@ -73,15 +74,19 @@ fn render_all(args: &Args) -> Result<u8, Failure> {
         return Err(Failure::new(USAGE, "several scenes need a folder for -o, or none"));
     }
     let settings = args.picture.settings()?;
-    // Opening a device takes longer than reading most scenes: both at once. The device is opened here, since a driver's
-    // many allocations are cheaper on the thread whose heap grows in large steps.
+    // Opening a device takes longer than reading most scenes: both at once, and what else can be done without one. The device is
+    // opened here, since a driver's many allocations are cheaper on the thread whose heap grows in large steps.
     let start = Instant::now();
     let (gpu, open_time, first) = std::thread::scope(|scope| {
-        let reading = scope.spawn(|| Loaded::read(&args.scenes[0], args.quiet));
+        let reading = scope.spawn(|| {
+            let loaded = Loaded::read(&args.scenes[0], args.quiet);
+            let ahead = loaded.as_ref().ok().and_then(|loaded| args.ahead(&loaded.scene, &settings));
+            (loaded, ahead)
+        });
         let gpu = args.device.open();
         (gpu, start.elapsed(), reading.join())
     });
-    let first = first.map_err(|_| Failure::new(super::failure::SCENE, "reading the scene failed"))?;
+    let (first, ahead) = first.map_err(|_| Failure::new(super::failure::SCENE, "reading the scene failed"))?;
 
     let mut all_stats = Vec::new();
     let mut code = OK;
@@ -89,7 +94,7 @@ fn render_all(args: &Args) -> Result<u8, Failure> {
     // A scene that cannot be read is the better message where there is no device either.
     let gpu = match (gpu, &first) {
         (Err(_), Some(Err(_))) if args.scenes.len() == 1 => None,
-        (gpu, _) => gpu?,
+        (gpu, _) => gpu?.map(|gpu| gpu.having(ahead)),
     };
     for path in &args.scenes {
         let loaded = first.take().unwrap_or_else(|| Loaded::read(path, args.quiet));
@@ -114,6 +119,14 @@ fn render_all(args: &Args) -> Result<u8, Failure> {
         std::mem::forget(gpu);
     }
     Ok(code)
+}
+
+impl Args {
+    /// What of this scene can be done before the device is open.
+    fn ahead(&self, scene: &Scene, settings: &Settings) -> Option<Ahead> {
+        let effects = self.picture.renderable_effects(scene, settings).ok()?;
+        self.device.uses_vulkan().then(|| Ahead::of(scene, settings, &effects, self.device.precision))?
+    }
 }
 
 /// A software driver that takes less than this has found its kernels in its cache.

@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use serde::Serialize;
 
+use super::ahead::Ahead;
 use super::error::Error;
 use super::kernel_cache::KernelCache;
 use super::pipeline::{MAX_TEXTURES, Specialisation, Stages, compile};
@@ -145,6 +146,8 @@ pub struct Gpu {
     failure: Arc<Mutex<Option<String>>>,
     /// Those of earlier runs.
     pub(super) kernel_cache: Option<KernelCache>,
+    /// What was done before the device was open.
+    pub(super) ahead: Option<Ahead>,
     /// Compiled kernels that are used again; `None` where every renderer compiles its own.
     kept: Option<Mutex<Kept>>,
 }
@@ -154,6 +157,10 @@ type Kept = Vec<(Specialisation, Arc<Stages>)>;
 
 /// For so many specialisations compiled kernels are kept; one more drops the one that was not used for the longest time.
 const MAX_KEPT: usize = 16;
+
+/// Software devices calculate in `f64` at little more than the price of `f32`, far below that of error-free transforms; hardware
+/// has few `f64` units.
+pub(super) const SOFTWARE_LADDER: [Tier; 3] = [Tier::Fast, Tier::Double, Tier::Robust];
 
 /// All Vulkan devices, in the driver's order.
 pub fn list() -> Result<Vec<DeviceInfo>, Error> {
@@ -225,7 +232,7 @@ impl Gpu {
         let mappable = features.contains(wgpu::Features::MAPPABLE_PRIMARY_BUFFERS);
         let tuned = DeviceTuning::of(&info);
         let kernel_cache = keeps_kernels.then(|| KernelCache::open(&device, &adapter.get_info())).flatten();
-        Ok(Self { info, tuned, device, queue, mappable, failure, kernel_cache, kept: None })
+        Ok(Self { info, tuned, device, queue, mappable, failure, kernel_cache, ahead: None, kept: None })
     }
 
     /// Why compiled kernels of earlier runs are not used, where they could be.
@@ -245,6 +252,12 @@ impl Gpu {
     /// Renders with `tuning` from now on, which has to be one that [`DeviceInfo::problem_with`] has no objection to.
     pub fn set_tuning(&mut self, tuning: Tuning) {
         self.tuned.tuning = tuning;
+    }
+
+    /// Uses what was done before the device was open.
+    #[must_use]
+    pub fn having(self, ahead: Option<Ahead>) -> Self {
+        Self { ahead, ..self }
     }
 
     /// From now on renderers share the kernels that they compile: for whoever renders many pictures and measures no
@@ -282,11 +295,10 @@ impl Gpu {
         Ok((stages, false))
     }
 
-    /// The tiers that `auto` chooses from, cheapest first. Software devices calculate in `f64` at little more than the price
-    /// of `f32`, far below that of error-free transforms; hardware has few `f64` units.
+    /// The tiers that `auto` chooses from, cheapest first.
     pub fn ladder(&self) -> &'static [Tier] {
         match (self.info.kind, self.info.f64) {
-            ("software", true) => &[Tier::Fast, Tier::Double, Tier::Robust],
+            ("software", true) => &SOFTWARE_LADDER,
             _ => &Tier::ALL,
         }
     }

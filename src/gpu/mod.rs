@@ -1,5 +1,6 @@
 //! The GPU path: a WGSL compute shader on any Vulkan device.
 
+mod ahead;
 mod compute;
 mod device;
 pub mod drivers;
@@ -22,6 +23,7 @@ mod timestamps;
 mod tuned;
 mod upload;
 
+pub use ahead::Ahead;
 pub use device::{Choice, DeviceInfo, Gpu, list};
 pub use echo::echo_layout;
 pub use error::Error;

@@ -50,22 +50,29 @@ pub struct Specialisation {
 }
 
 impl Specialisation {
-    /// For `scene` with `effects` under `settings`.
-    pub fn new(scene: &Scene, settings: &Settings, effects: &Effects, kernel: Kernel, gpu: &Gpu) -> Self {
+    /// For `scene` with `effects` under `settings`, on a device with this tuning that reads these textures.
+    pub fn new(
+        scene: &Scene,
+        settings: &Settings,
+        effects: &Effects,
+        kernel: Kernel,
+        tuning: &Tuning,
+        textures: Textures,
+    ) -> Self {
         Self {
             kernel,
             effects: effects.set,
             refraction: NonZeroU32::new(effects.waiting(scene)),
             skip_self: settings.secondary == Secondary::SkipSelf,
             blinn: settings.specular == Specular::Blinn,
-            storage: Storage::Tables(gpu.textures()),
+            storage: Storage::Tables(textures),
             lights: scene.lights.len() as u32,
             places: Places::Both,
             walk: Walk::InPlace,
             samples: settings.samples,
             slots: Slots::Tiles,
             count_rays: false,
-            workgroup: gpu.tuned.tuning.workgroup,
+            workgroup: tuning.workgroup,
         }
     }
 
@@ -247,7 +254,13 @@ pub(super) struct Stages {
 pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stages, Error> {
     let constants = specialisation.constants();
     let parsed = |module: &Module| Parsed::new(module).map_err(Error::Lost);
-    let module = parsed(&specialisation.module())?;
+    let own;
+    let module = if let Some(module) = gpu.ahead.as_ref().and_then(|ahead| ahead.module(specialisation)) {
+        module
+    } else {
+        own = parsed(&specialisation.module())?;
+        &own
+    };
     let Storage::Tables(textures) = specialisation.storage else {
         return Err(Error::Lost("only scenes in tables are rendered".into()));
     };
@@ -270,7 +283,7 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
     };
     let primary = [(4, vectors), (6, places)];
     let kernel =
-        |entry_point, own: &[(u32, Access)]| stage(gpu, &module, entry_point, &constants, &[&common[..], own].concat());
+        |entry_point, own: &[(u32, Access)]| stage(gpu, module, entry_point, &constants, &[&common[..], own].concat());
     let between = || {
         let module = parsed(&Module::between_stages())?;
         let mut group = vec![("GROUP", f64::from(specialisation.workgroup))];

@@ -16,7 +16,7 @@ use super::error::Error;
 use super::pack::{Packed, list_contents};
 use super::pipeline::{Bounce, Resource, Specialisation, Stage, Stages};
 use super::readable::Readable;
-use super::shader::{Kernel, Slots, Walk};
+use super::shader::{Kernel, Slots, Variant, Walk};
 use super::tables::{are_too_large, check_fits, copies_fit, copy_resources, list_resources, scene_resources};
 use super::timestamps::Timestamps;
 use super::upload::empty_texels;
@@ -150,7 +150,7 @@ impl<'a> GpuRenderer<'a> {
         let (scene, settings) = in_range(scene, settings);
         let (scene, settings) = (scene.as_ref(), &settings);
         let tuning = &gpu.tuned.tuning;
-        let specialisation = Specialisation::new(scene, settings, effects, kernel, gpu);
+        let specialisation = Specialisation::new(scene, settings, effects, kernel, tuning, gpu.textures());
         let camera = Camera::new(scene, settings);
         let lists = |density| Acceleration::with_density(scene, &camera, specialisation.effects, rounding, density);
         let mut accel = lists(&tuning.density);
@@ -202,6 +202,11 @@ impl<'a> GpuRenderer<'a> {
             rays: [0; 2],
             listed: 0,
         })
+    }
+
+    /// Which kernels render.
+    pub fn variant(&self) -> Variant {
+        self.inputs.specialisation.variant()
     }
 
     /// Times of the work so far.

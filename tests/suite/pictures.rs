@@ -7,12 +7,13 @@ use trueray::cpu::{Judge, Reference};
 use trueray::effects::{Effect, EffectSet, Effects, Request};
 use trueray::engine::{Backend, Engine, render_bands};
 use trueray::film::Picture;
-use trueray::gpu::GpuRenderer;
+use trueray::gpu::{Ahead, Choice, Gpu, GpuRenderer};
 use trueray::precision::{self, Selection, Tier};
 use trueray::settings::{Settings, Specular};
+use trueray::tuning::{Class, Tuning};
 use trueray::{gpu, tiles};
 
-use crate::support::{cpu_picture, gpu, gpu_picture, scene, scene_files, scene_of};
+use crate::support::{cpu_picture, gpu, gpu_picture, root, scene, scene_files, scene_of};
 
 /// Scenes whose every pixel all tiers promise.
 const ORDINARY: [&str; 3] = ["basic", "effects", "refraction"];
@@ -92,7 +93,7 @@ fn switching_off_a_needed_effect_changes_the_picture() {
     let Some(gpu) = gpu("switching_off_a_needed_effect_changes_the_picture") else { return };
     let settings = Settings::classic();
     for effect in Effect::ALL {
-        let scene = scene(&crate::support::root().join(format!("scenes/effects/{effect}.txt")));
+        let scene = scene(&root().join(format!("scenes/effects/{effect}.txt")));
         let needed = Effects::of(&scene, &settings);
         assert!(needed.set.has(effect), "{effect}");
         let without = Effects::requested(&scene, &settings, &Request::Changed(vec![(effect, false)]));
@@ -109,7 +110,7 @@ fn switching_off_a_needed_effect_changes_the_picture() {
 #[test]
 fn bands_give_the_same_bytes_as_one_piece() {
     let Some(gpu) = gpu("bands_give_the_same_bytes_as_one_piece") else { return };
-    let scene = scene(&crate::support::root().join("scenes/effects/reflections.txt"));
+    let scene = scene(&root().join("scenes/effects/reflections.txt"));
     let settings = Settings::classic();
     let effects = Effects::of(&scene, &settings);
     let (whole, _) = gpu_picture(&gpu, Tier::Fast, &scene, &settings, &effects);
@@ -174,7 +175,7 @@ fn gpu_counts_the_rays_of_the_reference() {
 }
 
 /// The tiers that this device can run.
-fn tiers(gpu: &gpu::Gpu) -> impl Iterator<Item = Tier> {
+fn tiers(gpu: &Gpu) -> impl Iterator<Item = Tier> {
     Tier::ALL.into_iter().filter(|&tier| gpu.kernel(tier).is_ok())
 }
 
@@ -220,6 +221,34 @@ fn auto_picks_a_tier_that_covers_the_scene() {
     assert_eq!(Selection::of(&plain, &effects, precision::Request(None), gpu.ladder()).tier, Tier::Fast);
 }
 
+/// What was parsed before a device was open is what a software device with its class's tuning renders with; where it is for other
+/// kernels, it changes nothing.
+#[test]
+fn kernels_are_parsed_ahead_for_the_picture_that_follows() {
+    let Some(own) = gpu("kernels_are_parsed_ahead_for_the_picture_that_follows") else { return };
+    let (settings, software) = (Settings::classic(), Tuning::of(Class::Software));
+    let is_expected = own.info.kind == "software" && own.tuned.tuning == software;
+    let ahead_of = |scene: &trueray::scene::Scene| {
+        Ahead::of(scene, &settings, &Effects::of(scene, &settings), precision::Request(None))
+    };
+    let glass = scene(&root().join("scenes/refraction/glass-ball.txt"));
+    for file in scene_files(&["basic"]) {
+        let scene = scene(&file);
+        let effects = Effects::of(&scene, &settings);
+        let tier = Selection::of(&scene, &effects, precision::Request(None), own.ladder()).tier;
+        let (expected, _) = gpu_picture(&own, tier, &scene, &settings, &effects);
+        for ahead in [ahead_of(&scene), ahead_of(&glass)].into_iter().flatten() {
+            let variant = ahead.variant();
+            let gpu = Gpu::open(&Choice::Auto).unwrap().having(Some(ahead));
+            if is_expected && variant.refraction.is_none() {
+                let renderer = GpuRenderer::new(&gpu, &scene, &settings, &effects, tier).unwrap();
+                assert_eq!(renderer.variant(), variant, "{}", short(&file));
+            }
+            assert!(gpu_picture(&gpu, tier, &scene, &settings, &effects).0 == expected, "{}", short(&file));
+        }
+    }
+}
+
 /// A picture that is wrong everywhere must stay unexplained nearly everywhere, or the margins would prove nothing.
 #[test]
 fn the_margins_explain_little() {
@@ -250,7 +279,7 @@ fn a_lost_device_is_an_error_and_no_panic() {
     if gpu("a_lost_device_is_an_error_and_no_panic").is_none() {
         return;
     }
-    let own = gpu::Gpu::open(&gpu::Choice::Gpu).unwrap();
+    let own = Gpu::open(&Choice::Gpu).unwrap();
     let scene = scene_of("SPHERE s 0 0 -5 2 2 2 1 1 1 1 0 0 0 1\nAMBIENT 1 1 1");
     let settings = Settings::classic();
     let effects = Effects::of(&scene, &settings);

@@ -1,0 +1,52 @@
+//! What can be done for a picture before there is a device to do it on: opening one takes longer than reading most scenes.
+
+use super::device::SOFTWARE_LADDER;
+use super::pipeline::Specialisation;
+use super::shader::{Kernel, Textures, Variant};
+use super::spirv::Parsed;
+use crate::accel::Acceleration;
+use crate::camera::Camera;
+use crate::effects::Effects;
+use crate::precision::{Request, Selection};
+use crate::scene::Scene;
+use crate::settings::Settings;
+use crate::tuning::{Class, Tuning};
+
+/// With more spheres, looking at the scene takes longer than a device takes to open.
+const MAX_SPHERES: usize = 2000;
+
+/// The kernels of a picture as they most likely will be, parsed. Where they turn out to be others, nothing is lost but the time of
+/// a thread that had nothing else to do.
+#[derive(Debug)]
+pub struct Ahead {
+    variant: Variant,
+    module: Parsed,
+}
+
+impl Ahead {
+    /// For a software device with the tuning of its class. Where there are graphics cards, drivers take far longer than this saves.
+    pub fn of(scene: &Scene, settings: &Settings, effects: &Effects, request: Request) -> Option<Self> {
+        if scene.spheres.len() > MAX_SPHERES {
+            return None;
+        }
+        let tuning = Tuning::of(Class::Software);
+        let selection = Selection::of(&settings.view.relative(scene), effects, request, &SOFTWARE_LADDER);
+        let kernel = Kernel::Tier(selection.tier);
+        let specialisation = Specialisation::new(scene, settings, effects, kernel, &tuning, Textures::Stored);
+        let camera = Camera::new(scene, settings);
+        let accel = Acceleration::with_density(scene, &camera, effects.set, kernel.rounding(), &tuning.density);
+        let specialisation = specialisation.with_lists(&accel, &tuning);
+        let module = Parsed::new(&specialisation.module()).ok()?;
+        Some(Self { variant: specialisation.variant(), module })
+    }
+
+    /// Which kernels these are.
+    pub fn variant(&self) -> Variant {
+        self.variant
+    }
+
+    /// The module of these kernels, if it is the one.
+    pub(super) fn module(&self, specialisation: &Specialisation) -> Option<&Parsed> {
+        (self.variant == specialisation.variant()).then_some(&self.module)
+    }
+}
