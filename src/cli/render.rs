@@ -10,7 +10,7 @@ use super::options::{DeviceOptions, PictureOptions, device_name};
 use super::output::{err, errln};
 use super::progress::{Progress, Style};
 use super::sampling::{Choice, SamplingOptions};
-use super::stats::{Sampled, Stats};
+use super::stats::{Sampled, Stats, peak_memory_mib};
 use crate::effects::Effects;
 use crate::engine::{Backend, Engine, render_bands, render_partial};
 use crate::film::{Format, PictureWriter, Target};
@@ -220,6 +220,7 @@ fn render_one(
         write_ms: ms(write_time),
         // Parsing and opening overlap.
         total_ms: ms(loaded.parse_time.max(open_time) + start.elapsed()),
+        peak_memory_mib: peak_memory_mib(),
     };
     if !args.quiet {
         let Stats { width, height, output, device, total_ms, .. } = &stats;

@@ -53,6 +53,15 @@ pub(super) struct Stats {
     pub write_ms: f64,
     /// All of the above, from the scene file to the picture file.
     pub total_ms: f64,
+    /// The most memory that the process has had so far, in MiB, the driver's included; only Linux tells.
+    pub peak_memory_mib: Option<f64>,
+}
+
+/// [`Stats::peak_memory_mib`].
+pub(super) fn peak_memory_mib() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let kib = status.lines().find_map(|line| line.strip_prefix("VmHWM:")?.trim().strip_suffix("kB"))?;
+    kib.trim().parse::<f64>().ok().map(|kib| kib / 1024.0)
 }
 
 impl Stats {
@@ -98,6 +107,9 @@ impl Stats {
         if self.times.dispatches > 0 {
             let Times { dispatches, longest_dispatch_ms, .. } = self.times;
             row("dispatches", format!("{dispatches}, longest {longest_dispatch_ms:.3} ms"));
+        }
+        if let Some(mib) = self.peak_memory_mib {
+            row("peak memory", format!("{mib:.0} MiB"));
         }
         text
     }

@@ -1,5 +1,6 @@
 #!/usr/bin/env sh
-# The same scenes rendered by trueray and by whichever of POV-Ray and Tachyon is installed, in alternation on this machine.
+# The same scenes rendered by trueray and by whichever of POV-Ray, Tachyon and a program on Embree there is, in alternation on this
+# machine. The last is embree.cpp beside this file, which is compiled where a C++ compiler finds Embree 3 (Debian: libembree-dev).
 #
 # usage: sh tests/bench/peers.sh [SCENE…]      without scenes: those of `trueray bench`
 #
@@ -48,6 +49,13 @@ else
     trap 'rm -rf "$folder"' EXIT
 fi
 
+log=$folder/embree.log
+if c++ -O3 -march=native -std=c++17 "$root/tests/bench/embree.cpp" -lembree3 -lpthread -o "$folder/embree" 2>"$log"; then
+    peers="$peers embree"
+else
+    echo "embree: cannot be compiled ($(grep -m 1 -E 'error|not found' "$log")), left out"
+fi
+
 now() { date +%s%N; }
 since() { echo "$1 $(now)" | awk '{ printf "%.3f\n", ($2 - $1) / 1e6 }'; }
 
@@ -87,6 +95,14 @@ run_tachyon() { # scene, picture
     seconds 'Ray Tracing Time: *\([0-9.]*\) seconds' "$2.log" >>"$folder/tachyon.render"
 }
 
+run_embree() { # scene, picture
+    start=$(now)
+    "$folder/embree" "$1" "$2" "$threads" --res "$res" >"$2.log" 2>&1 || failed "$2.log"
+    since "$start" >>"$folder/embree.process"
+    sed -n 's/^prepare \([0-9.]*\) ms.*/\1/p' "$2.log" >>"$folder/embree.prepare"
+    sed -n 's/.*trace \([0-9.]*\) ms.*/\1/p' "$2.log" >>"$folder/embree.render"
+}
+
 median() { sort -g "$1" | awk '{ x[NR] = $1 } END { if (NR) print NR % 2 ? x[(NR + 1) / 2] : (x[NR / 2] + x[NR / 2 + 1]) / 2 }'; }
 range() { sort -g "$1" | awk 'NR == 1 { low = $1 } { high = $1 } END { printf "(%.1f … %.1f)", low, high }'; }
 
@@ -116,13 +132,21 @@ scene_of() { # file
     echo "$name"
     able=
     for peer in $peers; do
-        case $peer in povray) file=$name.pov ;; tachyon) file=$name.dat ;; esac
-        if "$trueray" export "$1" --to "$peer" --res "$res" -o "$folder/$file" 2>"$folder/$peer.why"; then
+        # Embree's program reads scenes as they are.
+        case $peer in
+        povray) set -- "$1" "$trueray" export "$1" --to "$peer" --res "$res" -o "$folder/$name.pov" ;;
+        tachyon) set -- "$1" "$trueray" export "$1" --to "$peer" --res "$res" -o "$folder/$name.dat" ;;
+        embree) set -- "$1" "$folder/embree" "$1" "$folder/$name.embree.ppm" "$threads" --res 8x8 ;;
+        esac
+        scene=$1
+        shift
+        if "$@" >/dev/null 2>"$folder/$peer.why"; then
             able="$able $peer"
         else
             echo "  $peer cannot take part:"
             sed 's/^/    /' "$folder/$peer.why"
         fi
+        set -- "$scene"
     done
     # The first round warms up: caches of files and of compiled kernels.
     round=0
@@ -132,6 +156,7 @@ scene_of() { # file
             case $peer in
             povray) run_povray "$folder/$name.pov" "$folder/$name.povray.ppm" ;;
             tachyon) run_tachyon "$folder/$name.dat" "$folder/$name.tachyon.ppm" ;;
+            embree) run_embree "$1" "$folder/$name.embree.ppm" ;;
             esac
         done
         [ "$round" -gt 0 ] || rm -f "$folder"/*.prepare "$folder"/*.render "$folder"/*.process
@@ -159,6 +184,7 @@ for peer in $peers; do
     case $peer in
     povray) povray --version 2>&1 | sed -n 's/^\(POV-Ray [0-9.a-z]*\).*/\1/p' | head -n 1 ;;
     tachyon) echo "Tachyon $(tachyon -version)" ;;
+    embree) "$folder/embree" --version ;;
     esac
 done
 

@@ -253,6 +253,9 @@ fn stats_tell_device_effects_rays_and_times() {
     assert_eq!(stats["device"], "the CPU reference (f64)");
     assert_eq!(stats["effects"]["set"], serde_json::json!(["ambient"]));
     assert_eq!(stats["rays"]["primary"], 200);
+    if cfg!(target_os = "linux") {
+        assert!(stats["peak_memory_mib"].as_f64().unwrap() > 1.0);
+    }
     for time in ["parse_ms", "prepare_ms", "compile_ms", "render_ms", "read_back_ms", "write_ms", "total_ms"] {
         assert!(stats[time].is_f64(), "{time}");
     }
