@@ -1,5 +1,20 @@
-// The nearest intersection of a ray that leaves a surface, where no sphere is in the grid.
+// The nearest intersection of a ray that leaves a surface, where no sphere is in the grid: all of some, whose number is known.
+
+override SPHERE_COUNT: u32;
 
 fn nearest_secondary(ray: Ray, own: Own, range: Range) -> Hit {
-    return nearest_large(no_hit(), ray, own, range);
+    var nearest = no_hit();
+    var sphere = 0u;
+    // Two in each turn: see nearest_large.
+    loop {
+        nearest = nearer_of(nearest, ray, body_of(sphere), sphere, own, range);
+        let second = min(sphere + 1u, SPHERE_COUNT - 1u);
+        nearest = nearer_of(nearest, ray, body_of(second), second, own, range);
+        sphere += 2u;
+        if sphere >= SPHERE_COUNT {
+            break;
+        }
+    }
+    is_cut |= sphere < SPHERE_COUNT;
+    return nearest;
 }

@@ -37,6 +37,8 @@ pub struct Specialisation {
     pub lights: u32,
     /// Where the spheres are that secondary rays look for.
     pub places: Places,
+    /// How many there are, where all are outside the grid.
+    pub sphere_count: u32,
     /// How paths are walked, where nothing refracts.
     pub walk: Walk,
     /// Side of the grid of samples in a pixel.
@@ -68,6 +70,7 @@ impl Specialisation {
             storage: Storage::Tables(textures),
             lights: scene.lights.len() as u32,
             places: Places::Both,
+            sphere_count: 0,
             walk: Walk::InPlace,
             samples: settings.samples,
             slots: Slots::Tiles,
@@ -78,7 +81,8 @@ impl Specialisation {
 
     /// For the lists that rays will look through.
     pub(super) fn with_lists(self, accel: &Acceleration, tuning: &Tuning) -> Self {
-        let Some(grid) = &accel.grid else { return Self { places: Places::Large, ..self } };
+        // Without secondary rays nobody looks for any.
+        let Some(grid) = &accel.grid else { return Self { places: Places::Large, sphere_count: 1, ..self } };
         let places = match grid.large().len() {
             0 => Places::Grid,
             large if large == grid.lists.entries.len() => Places::Large,
@@ -92,7 +96,8 @@ impl Specialisation {
             Some(paths) if places != Places::Large && entries >= tuning.in_turn_from => Walk::InTurn(paths),
             _ => Walk::AtOnce,
         };
-        Self { places, walk, ..self }
+        let sphere_count = if places == Places::Large { grid.large().len().max(1) as u32 } else { 0 };
+        Self { places, sphere_count, walk, ..self }
     }
 
     /// What decides the text of its kernels.
@@ -137,6 +142,9 @@ impl Specialisation {
             }
         }
         if self.storage != Storage::Ranges {
+            if self.places == Places::Large {
+                constants.push(("SPHERE_COUNT", f64::from(self.sphere_count)));
+            }
             constants.push(("LIGHT_COUNT", f64::from(self.lights)));
             constants.push(("MATERIAL", material_vectors(self.effects) as f64));
             constants.push(("SHAPE_ENDS", f64::from(self.reads_shape_ends())));

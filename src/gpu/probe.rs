@@ -264,6 +264,7 @@ impl<'a> Prober<'a> {
             storage: Storage::Ranges,
             lights: 0,
             places: Places::Large,
+            sphere_count: 0,
             walk: Walk::InPlace,
             count_rays: false,
             workgroup: 64,

@@ -60,6 +60,7 @@ fn specialisation(variant: &Variant, effects: EffectSet, flags: usize) -> Specia
         storage,
         lights: 2,
         places,
+        sphere_count: 3,
         walk,
         samples,
         slots,
