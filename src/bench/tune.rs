@@ -21,13 +21,12 @@ const WORTHWHILE: f64 = 0.97;
 fn cases(knob: &Knob) -> &'static [(&'static str, usize)] {
     match knob.name {
         "light_entries" => &[("spheres", 100), ("spheres", 10_000)],
-        "light_entries_of_many" => &[("spheres", 100_000)],
-        "longest_tile" => &[("spheres", 100_000)],
+        "longest_tile" | "light_entries_of_many" => &[("spheres", 100_000)],
         "grid_cells" => &[("mirrors", 100), ("mirrors", 10_000)],
         "grid_cells_of_many" => &[("mirrors", 100_000)],
         "in_place_below" => &[("spheres", 10), ("mirrors", 100), ("mirrors", 1000), ("mirrors", 10_000)],
         "in_turn_from" => &[("mirrors", 1000), ("mirrors", 10_000), ("mirrors", 100_000)],
-        "paths" => &[("mirrors", 10_000), ("mirrors", 100_000)],
+        "paths" | "path_mib" => &[("mirrors", 10_000), ("mirrors", 100_000)],
         "dispatch_ms" => &[("spheres", 1000), ("mirrors", 10_000)],
         _ => &[("classic", 5), ("spheres", 100), ("mirrors", 1000)],
     }

@@ -37,9 +37,6 @@ const TILE_PIXELS: usize = (TILE * TILE) as usize;
 /// Tiles of a dispatch at the most: they lie in a uniform buffer.
 const MAX_DISPATCH_TILES: u32 = 16_384;
 
-/// Memory for paths at the most.
-const MAX_PATH_BYTES: u64 = 64 << 20;
-
 /// Times of the work on the device so far.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct DeviceTimes {
@@ -293,7 +290,8 @@ impl<'a> GpuRenderer<'a> {
         let path = 2 * specialisation.path_size() * u64::from(specialisation.keeps_paths());
         let color = if self.samples > 1 { specialisation.color_size() } else { 4 };
         let tile_bytes = TILE_PIXELS as u64 * self.samples * path.max(color);
-        let bytes = MAX_PATH_BYTES.min(info.max_storage_binding).min(info.max_buffer);
+        let bytes =
+            (u64::from(self.gpu.tuned.tuning.path_mib) << 20).min(info.max_storage_binding).min(info.max_buffer);
         // Paths take a workgroup for so many of them.
         let groups =
             u64::from(info.max_workgroups) * u64::from(specialisation.workgroup) / (TILE_PIXELS as u64 * self.samples);

@@ -18,7 +18,7 @@ pub struct Knob {
 }
 
 /// All numbers of a tuning.
-pub static KNOBS: [Knob; 12] = [
+pub static KNOBS: [Knob; 13] = [
     Knob {
         name: "workgroup",
         limits: [1.0, 256.0],
@@ -88,6 +88,13 @@ pub static KNOBS: [Knob; 12] = [
         candidates: &[0.5, 1.0, 2.0],
         get: |tuning| tuning.density.grid_cells_of_many,
         set: |tuning, value| tuning.density.grid_cells_of_many = value,
+    },
+    Knob {
+        name: "path_mib",
+        limits: [1.0, 1024.0],
+        candidates: &[16.0, 32.0, 64.0, 128.0],
+        get: |tuning| f64::from(tuning.path_mib),
+        set: |tuning, value| tuning.path_mib = value as u32,
     },
     Knob {
         name: "dispatch_ms",

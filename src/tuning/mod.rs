@@ -26,6 +26,8 @@ pub struct Tuning {
     pub stored_tables: bool,
     /// How fine the lists of spheres are.
     pub density: Density,
+    /// Memory for the paths of a dispatch at the most, in MiB.
+    pub path_mib: u32,
     /// How long a dispatch should take, in ms: long enough to hide its overhead, far below what loses a device.
     pub dispatch_ms: f64,
     /// Intersection tests of the first dispatch, before any is measured: some milliseconds on the slowest device of the
@@ -84,14 +86,22 @@ impl Tuning {
             // lavapipe takes three quarters of the time of sampled ones.
             stored_tables: true,
             density: Density::DEFAULT,
+            // All of it is set to 0 before the first dispatch, which takes lavapipe some 20 ms for as much more.
+            path_mib: 32,
             // No watchdog guards them, and their threads wait for each other at the end of each.
             dispatch_ms: 200.0,
             first_dispatch_tests: 4e6,
         };
         // Its invocations do not wait for each other in the same way, and it wants more of them: measured on a discrete one, where
         // 32 paths an invocation take five to eight times as long. Following them in place was not measured on one.
-        let hardware =
-            Self { workgroup: 64, dispatch_ms: INTERACTIVE_MS, in_place_below: 0.0, in_turn_from: NEVER, ..software };
+        let hardware = Self {
+            workgroup: 64,
+            path_mib: 64,
+            dispatch_ms: INTERACTIVE_MS,
+            in_place_below: 0.0,
+            in_turn_from: NEVER,
+            ..software
+        };
         // Storage textures and sampled ones take the same time there, too.
         match class {
             Class::Software => software,
