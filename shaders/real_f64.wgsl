@@ -40,7 +40,8 @@ fn power_of_two(k: i32) -> real {
     return real(low) * real(high);
 }
 
-// e^x for x <= 0, and 0 below 1e-73, which no picture sees: x = k ln 2 + r, |r| <= ln 2 / 2, then the Taylor series of e^r to r^14 / 14!, which leaves 2e-18.
+// e^x for x <= 0, and 0 below 1e-73, which no picture sees: x = k ln 2 + r, |r| <= ln 2 / 2, then the Taylor series of e^r to
+// r^14 / 14!, which leaves 2e-18.
 fn exponential(x: real) -> real {
     let is_seen = x > -170.0lf;
     let power = select(0.0lf, x, is_seen);

@@ -1,5 +1,6 @@
-// The nearest intersection of a ray that leaves a surface, where no sphere is in the grid: all of some, whose number is known.
+// The nearest intersection of a ray that leaves a surface, where no sphere is in the grid: among all, which are few.
 
+// Their number, where there are any.
 override SPHERE_COUNT: u32;
 
 fn nearest_secondary(ray: Ray, own: Own, range: Range) -> Hit {

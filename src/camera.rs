@@ -104,15 +104,6 @@ impl Camera {
         [offset / side, (side - 1.0 + offset) / side]
     }
 
-    /// More than how far from their places samples can be once the directions of their rays are rounded to `f32`, in pixel widths
-    /// and heights: some unit roundoffs of the greatest coordinates that such a direction is the sum of.
-    pub fn rounding(&self) -> [f64; 2] {
-        let Window { left, right, bottom, top, near } = self.window;
-        let length = left.abs().max(right.abs()) + bottom.abs().max(top.abs()) + near;
-        let of = |size: u32, extent: f64| 2.0_f64.powi(-21) * length / extent.abs() * f64::from(size);
-        [of(self.width, right - left), of(self.height, top - bottom)]
-    }
-
     /// Side k of the grid of samples in a pixel.
     pub fn samples(&self) -> u32 {
         self.samples

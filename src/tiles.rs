@@ -122,23 +122,21 @@ struct Pixels {
     count: u32,
     /// Where a pixel's first and last sample are.
     samples: [f64; 2],
-    /// How far off they can be.
-    rounding: f64,
 }
 
 impl Pixels {
     fn across(camera: &Camera) -> Self {
-        Self { count: camera.width(), samples: camera.samples_across(), rounding: camera.rounding()[0] }
+        Self { count: camera.width(), samples: camera.samples_across() }
     }
 
     fn down(camera: &Camera) -> Self {
-        Self { count: camera.height(), samples: camera.samples_down(), rounding: camera.rounding()[1] }
+        Self { count: camera.height(), samples: camera.samples_down() }
     }
 
-    /// More than the rounding of places between `a` and `b`: beside that of the rays, of which `f32` makes some 2⁻²² of the place,
-    /// what the places themselves have gone through.
+    /// More than rounding has taken from places between `a` and `b`. What it takes from rays is in the size of the spheres:
+    /// `ERROR_STEPS` in `src/accel/bounds.rs`.
     fn margin(&self, [a, b]: [f64; 2]) -> f64 {
-        self.rounding + (f64::from(self.count) + a.abs().max(b.abs())) / 65536.0
+        (f64::from(self.count) + a.abs().max(b.abs())) / 65536.0
     }
 
     /// Where samples of the first of these pixels begin and those of the last end.

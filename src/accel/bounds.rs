@@ -31,7 +31,9 @@ impl Rounding {
 const MARGIN: f64 = 1e-3;
 
 /// Rounding errors of a position in a test, relative to the greatest coordinate: some ten operations on differences of two
-/// positions, each as large as 2 √3 such coordinates.
+/// positions, each as large as 2 √3 such coordinates. Those of rays from the eye are half as large, which leaves room for the
+/// rounding of the ray's direction: of the vectors of its column and its row, at right angles, and of their sum, together some
+/// (√2 + 1) √3 at the greatest distance.
 const ERROR_STEPS: f64 = 32.0;
 
 /// Encloses the spheres of a scene.

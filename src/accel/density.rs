@@ -7,7 +7,7 @@ const MANY: usize = 50_000;
 /// Entries of the lists of all lights together, roughly, unless the cells become larger than the spheres: 64 MiB.
 const MAX_LIGHT_ENTRIES: f64 = (1 << 24) as f64;
 
-/// Cells and entries for each sphere. With many spheres the building of the lists, and the memory that they take, count for
+/// Cells and entries for each sphere, and spheres for each tile. With many spheres the building of the lists, and the memory that they take, count for
 /// more.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -33,6 +33,9 @@ impl Density {
         grid_cells: 3.0,
         grid_cells_of_many: 1.5,
     };
+
+    /// What takes little memory and is good enough.
+    pub const LEAST: Self = Self { longest_tile: f64::INFINITY, ..Self::DEFAULT };
 
     /// How many entries the lists of one of so many lights may have, roughly.
     pub(super) fn entries_of_a_light(&self, spheres: usize, lights: usize) -> u64 {

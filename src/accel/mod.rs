@@ -55,12 +55,21 @@ impl Acceleration {
         let lit = effects.has(Effect::Shadows);
         let spheres = scene.spheres.len();
         let entries = density.entries_of_a_light(spheres, lights.len());
-        let cells_per_sphere = density.cells_per_sphere(spheres);
         Self {
             screen: ScreenLists::new(&enclosure, camera, density.longest_tile),
             lights: LightBuffer::new(&enclosure, if lit { &lights } else { &[] }, entries, rounding),
-            grid: (effects.has(Effect::Reflections) || effects.has(Effect::Refraction))
-                .then(|| Grid::new(&enclosure, cells_per_sphere, rounding)),
+            grid: Self::grid_in(&enclosure, effects, rounding, density),
         }
+    }
+
+    /// The grid alone.
+    pub fn grid_of(scene: &Scene, effects: EffectSet, rounding: Rounding, density: &Density) -> Option<Grid> {
+        let enclosure = Enclosure::new(scene, effects.has(Effect::Ellipsoids), rounding);
+        Self::grid_in(&enclosure, effects, rounding, density)
+    }
+
+    fn grid_in(enclosure: &Enclosure, effects: EffectSet, rounding: Rounding, density: &Density) -> Option<Grid> {
+        let leave_surfaces = effects.has(Effect::Reflections) || effects.has(Effect::Refraction);
+        leave_surfaces.then(|| Grid::new(enclosure, density.cells_per_sphere(enclosure.len()), rounding))
     }
 }

@@ -37,7 +37,8 @@ struct Tiles<'a> {
 }
 
 impl ScreenLists {
-    /// Projects everything that `enclosure` has. Where tiles have more than `longest` spheres, on average, they become smaller.
+    /// Projects everything that `enclosure` has. Where tiles have more than `longest` spheres, on average, they become smaller, if
+    /// that helps.
     pub(super) fn new(enclosure: &Enclosure, camera: &Camera, longest: f64) -> Self {
         let limit = MAX_ENTRIES.max(8 * enclosure.len() as u64);
         let bounds = |sphere: usize| {
@@ -47,7 +48,8 @@ impl ScreenLists {
         let bounds: Vec<_> = (0..enclosure.len()).into_par_iter().map(bounds).collect();
         let (width, height) = (camera.width(), camera.height());
         let tiles = |shift: u32| {
-            let [across, down] = [width, height].map(|size| size.div_ceil(1 << shift));
+            // Whole tiles of the device, which renders what lies beyond the picture, too.
+            let [across, down] = [width, height].map(|size| size.next_multiple_of(TILE).div_ceil(1 << shift));
             Tiles { bounds: &bounds, camera, shift, across, down }
         };
         let mut chosen = tiles(FIRST_SHIFT);
@@ -57,12 +59,13 @@ impl ScreenLists {
             entries = chosen.rectangles();
         }
         while chosen.shift > LEAST_SHIFT && entries as f64 > longest * chosen.cells() as f64 {
+            // Four times as many: among large spheres their lists would be as long as before.
             let smaller = tiles(chosen.shift - 1);
-            entries = smaller.rectangles();
-            if entries + smaller.cells() as u64 > limit {
+            let smaller_entries = smaller.rectangles();
+            if smaller_entries > 3 * entries || smaller_entries + smaller.cells() as u64 > limit {
                 break;
             }
-            chosen = smaller;
+            (chosen, entries) = (smaller, smaller_entries);
         }
         Self { lists: Lists::build(&chosen), shift: chosen.shift, across: chosen.across, width, height }
     }
@@ -97,10 +100,9 @@ pub struct Cover {
 }
 
 impl Cover {
-    /// How many tiles of [`TILE`] pixels any sphere may cover, or a few more.
-    pub fn most(&self) -> u64 {
-        let listed = self.has_spheres.iter().filter(|has| **has).count() as u64;
-        listed << (2 * self.shift.saturating_sub(FIRST_SHIFT))
+    /// How many tiles of [`TILE`] pixels any sphere may cover.
+    pub fn count(&self) -> u64 {
+        self.covered(0, self.height).len() as u64
     }
 
     /// Top-left pixels of the tiles of [`TILE`] pixels that any sphere may cover, in rows `first` to `first + count`, in

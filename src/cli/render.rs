@@ -77,16 +77,17 @@ fn render_all(args: &Args) -> Result<u8, Failure> {
     // Opening a device takes longer than reading most scenes: both at once, and what else can be done without one. The device is
     // opened here, since a driver's many allocations are cheaper on the thread whose heap grows in large steps.
     let start = Instant::now();
-    let (gpu, open_time, first) = std::thread::scope(|scope| {
+    let (gpu, open_time, (first, ahead)) = std::thread::scope(|scope| {
         let reading = scope.spawn(|| {
             let loaded = Loaded::read(&args.scenes[0], args.quiet);
             let ahead = loaded.as_ref().ok().and_then(|loaded| args.ahead(&loaded.scene, &settings));
             (loaded, ahead)
         });
         let gpu = args.device.open();
-        (gpu, start.elapsed(), reading.join())
+        let failed = |_| (Err(Failure::new(super::failure::SCENE, "reading the scene failed")), None);
+        (gpu, start.elapsed(), reading.join().unwrap_or_else(failed))
     });
-    let (first, ahead) = first.map_err(|_| Failure::new(super::failure::SCENE, "reading the scene failed"))?;
+    let beginning = start.elapsed();
 
     let mut all_stats = Vec::new();
     let mut code = OK;
@@ -98,7 +99,7 @@ fn render_all(args: &Args) -> Result<u8, Failure> {
     };
     for path in &args.scenes {
         let loaded = first.take().unwrap_or_else(|| Loaded::read(path, args.quiet));
-        match loaded.and_then(|loaded| render_one(args, &settings, loaded, gpu.as_ref(), open_time)) {
+        match loaded.and_then(|loaded| render_one(args, &settings, loaded, gpu.as_ref(), [open_time, beginning])) {
             Ok(stats) => all_stats.push(stats),
             Err(failure) => {
                 let failed = failure.report();
@@ -124,8 +125,11 @@ fn render_all(args: &Args) -> Result<u8, Failure> {
 impl Args {
     /// What of this scene can be done before the device is open.
     fn ahead(&self, scene: &Scene, settings: &Settings) -> Option<Ahead> {
+        if !self.device.uses_vulkan() {
+            return None;
+        }
         let effects = self.picture.renderable_effects(scene, settings).ok()?;
-        self.device.uses_vulkan().then(|| Ahead::of(scene, settings, &effects, self.device.precision))?
+        Ahead::of(scene, settings, &effects, self.device.precision)
     }
 }
 
@@ -137,7 +141,7 @@ fn render_one(
     settings: &Settings,
     mut loaded: Loaded,
     gpu: Option<&Gpu>,
-    open_time: Duration,
+    [open_time, beginning]: [Duration; 2],
 ) -> Result<Stats, Failure> {
     let start = Instant::now();
     args.picture.resize(&mut loaded.scene);
@@ -219,7 +223,7 @@ fn render_one(
         times: engine.times(),
         write_ms: ms(write_time),
         // Parsing and opening overlap.
-        total_ms: ms(loaded.parse_time.max(open_time) + start.elapsed()),
+        total_ms: ms(loaded.parse_time.max(beginning) + start.elapsed()),
         peak_memory_mib: peak_memory_mib(),
     };
     if !args.quiet {

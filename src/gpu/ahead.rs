@@ -5,8 +5,8 @@ use super::pipeline::Specialisation;
 use super::shader::{Kernel, Textures, Variant};
 use super::spirv::Parsed;
 use crate::accel::Acceleration;
-use crate::camera::Camera;
 use crate::effects::Effects;
+use crate::geometry::in_range;
 use crate::precision::{Request, Selection};
 use crate::scene::Scene;
 use crate::settings::Settings;
@@ -32,10 +32,10 @@ impl Ahead {
         let tuning = Tuning::of(Class::Software);
         let selection = Selection::of(&settings.view.relative(scene), effects, request, &SOFTWARE_LADDER);
         let kernel = Kernel::Tier(selection.tier);
-        let specialisation = Specialisation::new(scene, settings, effects, kernel, &tuning, Textures::Stored);
-        let camera = Camera::new(scene, settings);
-        let accel = Acceleration::with_density(scene, &camera, effects.set, kernel.rounding(), &tuning.density);
-        let specialisation = specialisation.with_lists(&accel, &tuning);
+        let (scene, settings) = in_range(scene, settings);
+        let grid = Acceleration::grid_of(&scene, effects.set, kernel.rounding(), &tuning.density);
+        let specialisation = Specialisation::new(&scene, &settings, effects, kernel, &tuning, Textures::Stored)
+            .with_grid(grid.as_ref(), &tuning);
         let module = Parsed::new(&specialisation.module()).ok()?;
         Some(Self { variant: specialisation.variant(), module })
     }

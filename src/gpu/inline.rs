@@ -37,7 +37,7 @@ fn can_be_inlined(function: &Function) -> bool {
     returns.next() == Some(true) && !returns.any(|returns| returns) && !has_phi(function)
 }
 
-/// Whether values depend on the block before, which inlining changes; naga writes none.
+/// Whether values depend on the block before, which inlining changes; naga writes none where it checks no bounds.
 fn has_phi(function: &Function) -> bool {
     function.blocks.iter().flat_map(|block| &block.instructions).any(|it| it.class.opcode == Op::Phi)
 }
@@ -122,11 +122,11 @@ impl Inliner<'_> {
                 let label = block.label.as_ref().map(|label| names.renamed(label));
                 body.blocks.push(Block { label, instructions: Vec::new() });
             }
-            // A loop is declared in the block that begins it.
+            // What declares a loop has to stay in the block that begins it; naga calls nothing there.
             let begins_loop = block.instructions.iter().any(|instruction| instruction.class.opcode == Op::LoopMerge);
             for instruction in &block.instructions {
                 let callee = called(instruction).and_then(|id| self.inlinable.get(&id).copied());
-                if let Some(callee) = callee.filter(|callee| !begins_loop || callee.blocks.len() == 1) {
+                if let Some(callee) = callee.filter(|_| !begins_loop) {
                     let own = self.names(callee, ids(instruction).skip(1).map(|id| names.of(id)));
                     let value = self.copy(callee, own, body, true);
                     if let Some((result, value)) = instruction.result_id.zip(value) {

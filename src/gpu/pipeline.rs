@@ -9,7 +9,7 @@ use super::pack::material_vectors;
 use super::shader::{Kernel, Module, Places, Slots, Storage, Textures, Variant, Walk};
 use super::spirv::Parsed;
 use super::upload::texel_format;
-use crate::accel::Acceleration;
+use crate::accel::Grid;
 use crate::effects::{Effect, EffectSet, Effects};
 use crate::scene::Scene;
 use crate::settings::{Secondary, Settings, Specular};
@@ -79,10 +79,10 @@ impl Specialisation {
         }
     }
 
-    /// For the lists that rays will look through.
-    pub(super) fn with_lists(self, accel: &Acceleration, tuning: &Tuning) -> Self {
-        // Without secondary rays nobody looks for any.
-        let Some(grid) = &accel.grid else { return Self { places: Places::Large, sphere_count: 1, ..self } };
+    /// For the grid that rays which leave a surface look through, if there are any.
+    pub(super) fn with_grid(self, grid: Option<&Grid>, tuning: &Tuning) -> Self {
+        // Without such rays nobody looks for any sphere.
+        let Some(grid) = grid else { return Self { places: Places::Large, sphere_count: 1, ..self } };
         let places = match grid.large().len() {
             0 => Places::Grid,
             large if large == grid.lists.entries.len() => Places::Large,
@@ -96,7 +96,7 @@ impl Specialisation {
             Some(paths) if places != Places::Large && entries >= tuning.in_turn_from => Walk::InTurn(paths),
             _ => Walk::AtOnce,
         };
-        let sphere_count = if places == Places::Large { grid.large().len().max(1) as u32 } else { 0 };
+        let sphere_count = if places == Places::Large { grid.large().len() as u32 } else { 0 };
         Self { places, sphere_count, walk, ..self }
     }
 

@@ -151,11 +151,11 @@ impl<'a> GpuRenderer<'a> {
         let camera = Camera::new(scene, settings);
         let lists = |density| Acceleration::with_density(scene, &camera, specialisation.effects, rounding, density);
         let mut accel = lists(&tuning.density);
-        // Finer lists than those of the class must not keep a scene from fitting.
-        if tuning.density != Density::DEFAULT && are_too_large(gpu, &list_contents(&accel)) {
-            accel = lists(&Density::DEFAULT);
+        // Finer lists than are needed must not keep a scene from fitting.
+        if tuning.density != Density::LEAST && are_too_large(gpu, &list_contents(&accel)) {
+            accel = lists(&Density::LEAST);
         }
-        let mut specialisation = specialisation.with_lists(&accel, tuning);
+        let mut specialisation = specialisation.with_grid(accel.grid.as_ref(), tuning);
         let packed = Packed::new(scene, settings, effects, kernel, &accel);
         if specialisation.variant().copies() && !copies_fit(gpu, &packed, &accel) {
             specialisation.walk = Walk::AtOnce;
@@ -163,8 +163,7 @@ impl<'a> GpuRenderer<'a> {
         let list_tables = list_contents(&accel);
         check_fits(gpu, &packed, &list_tables)?;
         let cover = accel.screen.cover();
-        let picture_tiles = u64::from(scene.width.div_ceil(TILE)) * u64::from(scene.height.div_ceil(TILE));
-        let covered_tiles = picture_tiles.min(cover.most());
+        let covered_tiles = cover.count();
         // The lists on the host go before the spheres take memory on the device.
         let mut resources = list_resources(gpu, &list_tables)?;
         resources.extend(copy_resources(gpu, &packed, &accel, &specialisation)?);

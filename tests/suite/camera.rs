@@ -204,6 +204,7 @@ proptest! {
         sampling in prop::sample::select(vec![Sampling::Corner, Sampling::BottomLeft, Sampling::Center]),
         samples in 1_u32..4,
         longest_tile in prop::sample::select(vec![0.0, 1.0, 1e9]),
+        near in prop::sample::select(vec![1e-3, 0.1, 1.0, 2.0]),
     ) {
         let Ok(view) = View::new(DVec3::ZERO, Some(ahead.into()), up.into()) else { return Ok(()) };
         // The places above are those in the picture's axes, so that the spheres are mostly in view.
@@ -214,6 +215,7 @@ proptest! {
         };
         let mut scene = scene_of(&(spheres.iter().map(line).collect::<String>() + "AMBIENT 1 1 1"));
         (scene.width, scene.height) = (width, height);
+        scene.window.near = near;
         let side = |low: f64, size: f64, flip| if flip { (low + size, low) } else { (low, low + size) };
         (scene.window.left, scene.window.right) = side(window[0], size[0], flip[0]);
         (scene.window.bottom, scene.window.top) = side(window[1], size[1], flip[1]);
@@ -233,6 +235,11 @@ proptest! {
                         }
                     }
                 }
+            }
+            // What devices render beyond the picture has lists, too.
+            for [x, y] in lists.cover().covered(0, height) {
+                prop_assert!((x + 7) >> lists.shift < lists.across);
+                prop_assert!(lists.tile(x + 7, y + 7) < lists.lists.cells());
             }
             // Tiles that are covered are those with lists, in pieces as well.
             let pieces: Vec<_> = (0..height).step_by(16).flat_map(|y| lists.cover().covered(y, 16)).collect();

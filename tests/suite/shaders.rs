@@ -208,6 +208,55 @@ fn kernels_call_nothing() {
     }
 }
 
+/// What the shaders of this project have little of: returns before the end, pointers, variables that begin anew with each call.
+#[test]
+fn calls_are_inlined_but_of_functions_that_return_early() {
+    let mut module = Module::selftest();
+    module.text = "
+        @group(0) @binding(0) var<storage, read_write> result: array<u32>;
+        fn early(x: u32) -> u32 { if x > 3u { return inner(x); } return 1u; }
+        fn inner(x: u32) -> u32 { var sum = 2u; for (var i = 0u; i < x; i++) { sum += i; } return sum; }
+        fn same(x: u32) -> u32 { return x; }
+        fn add(to: ptr<function, u32>, x: u32) { *to += same(x); }
+        fn unused() -> u32 { return inner(7u); }
+        @compute @workgroup_size(1) fn main() {
+            var total = 0u;
+            for (var i = 0u; i < 5u; i++) { add(&total, same(inner(i))); }
+            result[0] = total + early(total);
+        }
+    "
+    .into();
+    let words = Parsed::new(&module).unwrap().spirv("main", &[], &[0]).unwrap();
+    let kernel = dr::load_words(words).unwrap();
+    let calls =
+        |function: &dr::Function| function.all_inst_iter().filter(|it| it.class.opcode == Op::FunctionCall).count();
+    // The one that returns early, without its own call, and the kernel with the call of it.
+    let counts: Vec<_> = kernel.functions.iter().map(calls).collect();
+    assert_eq!(counts, [0, 1]);
+    for function in &kernel.functions {
+        let is_variable = |it: &&dr::Instruction| it.class.opcode == Op::Variable;
+        let variables = function.all_inst_iter().filter(is_variable).count();
+        // All at the beginning, and those of a call begin anew where it was.
+        let first = &function.blocks[0].instructions;
+        assert_eq!(first.iter().take_while(is_variable).count(), variables);
+        assert!(variables > 0 && first.iter().filter(is_variable).all(|it| it.operands.len() == 1));
+    }
+    let kernel = &kernel.functions[1];
+    let initial = kernel.blocks.iter().skip(1).flat_map(|block| &block.instructions);
+    assert!(initial.filter(|it| it.class.opcode == Op::Store).count() >= 4);
+    for block in
+        kernel.blocks.iter().filter(|block| block.instructions.iter().any(|it| it.class.opcode == Op::LoopMerge))
+    {
+        // A loop begins in the block to which its end goes back.
+        let label = block.label_id().unwrap();
+        let back = kernel
+            .blocks
+            .iter()
+            .filter(|other| other.instructions.last().unwrap().operands.contains(&Operand::IdRef(label)));
+        assert_eq!(back.count(), 2, "from before and from its end");
+    }
+}
+
 /// A constant that the shader does not declare would be ignored silently by the validation above.
 #[test]
 fn every_constant_is_an_override_and_every_override_is_set() {

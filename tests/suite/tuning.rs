@@ -39,7 +39,7 @@ fn render(gpu: &Gpu, tier: Tier, scene: &Scene, settings: &Settings) -> Vec<u8> 
 /// Scenes of every kind of kernel, each with its settings.
 fn cases() -> Vec<(String, Scene, Settings)> {
     let small = |mut scene: Scene| {
-        (scene.width, scene.height) = (72, 40);
+        (scene.width, scene.height) = (70, 37);
         scene
     };
     let family = |name: &str, size| (format!("{name} {size}"), small(Family::named(name).unwrap().scene(size)));
