@@ -100,9 +100,14 @@ pub struct Cover {
 }
 
 impl Cover {
-    /// How many tiles of [`TILE`] pixels any sphere may cover.
-    pub fn count(&self) -> u64 {
-        self.covered(0, self.height).len() as u64
+    /// How many tiles of [`TILE`] pixels any sphere may cover, or a few more.
+    pub fn most(&self) -> u64 {
+        if self.shift < FIRST_SHIFT {
+            return self.covered(0, self.height).len() as u64;
+        }
+        // Not one by one: a picture may have far more of them than there are lists.
+        let listed = self.has_spheres.iter().filter(|has| **has).count() as u64;
+        listed << (2 * (self.shift - FIRST_SHIFT))
     }
 
     /// Top-left pixels of the tiles of [`TILE`] pixels that any sphere may cover, in rows `first` to `first + count`, in

@@ -163,7 +163,8 @@ impl<'a> GpuRenderer<'a> {
         let list_tables = list_contents(&accel);
         check_fits(gpu, &packed, &list_tables)?;
         let cover = accel.screen.cover();
-        let covered_tiles = cover.count();
+        let picture_tiles = u64::from(scene.width.div_ceil(TILE)) * u64::from(scene.height.div_ceil(TILE));
+        let covered_tiles = picture_tiles.min(cover.most());
         // The lists on the host go before the spheres take memory on the device.
         let mut resources = list_resources(gpu, &list_tables)?;
         resources.extend(copy_resources(gpu, &packed, &accel, &specialisation)?);
