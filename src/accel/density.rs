@@ -7,8 +7,8 @@ const MANY: usize = 50_000;
 /// Entries of the lists of all lights together, roughly, unless the cells become larger than the spheres: 64 MiB.
 const MAX_LIGHT_ENTRIES: f64 = (1 << 24) as f64;
 
-/// Cells and entries for each sphere, and spheres for each tile. With many spheres the building of the lists, and the memory that they take, count for
-/// more.
+/// Cells and entries for each sphere, and spheres for each tile. With many spheres the building of the lists, and the memory that
+/// they take, count for more.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Density {

@@ -41,7 +41,7 @@ pub(super) struct Args {
     /// Print which effects are simulated, and why
     #[arg(long)]
     explain: bool,
-    /// Print device, effects, rays and times
+    /// Print device, effects, rays, times and memory
     #[arg(long)]
     stats: bool,
     /// Write the same as JSON; `-` is standard error
@@ -87,7 +87,7 @@ fn render_all(args: &Args) -> Result<u8, Failure> {
         let failed = |_| (Err(Failure::new(super::failure::SCENE, "reading the scene failed")), None);
         (gpu, start.elapsed(), reading.join().unwrap_or_else(failed))
     });
-    let beginning = start.elapsed();
+    let ready_time = start.elapsed();
 
     let mut all_stats = Vec::new();
     let mut code = OK;
@@ -99,7 +99,7 @@ fn render_all(args: &Args) -> Result<u8, Failure> {
     };
     for path in &args.scenes {
         let loaded = first.take().unwrap_or_else(|| Loaded::read(path, args.quiet));
-        match loaded.and_then(|loaded| render_one(args, &settings, loaded, gpu.as_ref(), [open_time, beginning])) {
+        match loaded.and_then(|loaded| render_one(args, &settings, loaded, gpu.as_ref(), [open_time, ready_time])) {
             Ok(stats) => all_stats.push(stats),
             Err(failure) => {
                 let failed = failure.report();
@@ -141,7 +141,7 @@ fn render_one(
     settings: &Settings,
     mut loaded: Loaded,
     gpu: Option<&Gpu>,
-    [open_time, beginning]: [Duration; 2],
+    [open_time, ready_time]: [Duration; 2],
 ) -> Result<Stats, Failure> {
     let start = Instant::now();
     args.picture.resize(&mut loaded.scene);
@@ -223,7 +223,7 @@ fn render_one(
         times: engine.times(),
         write_ms: ms(write_time),
         // Parsing and opening overlap.
-        total_ms: ms(loaded.parse_time.max(beginning) + start.elapsed()),
+        total_ms: ms(loaded.parse_time.max(ready_time) + start.elapsed()),
         peak_memory_mib: peak_memory_mib(),
     };
     if !args.quiet {

@@ -139,10 +139,9 @@ impl Inliner<'_> {
                     Op::Variable => {
                         // It begins anew with each call.
                         let initial = copy.operands.drain(1..).next();
-                        let operands = copy.result_id.map(Operand::IdRef).into_iter().chain(initial);
-                        let store = Instruction::new(Op::Store, None, None, operands.collect());
-                        if store.operands.len() == 2 {
-                            body.push(store);
+                        if let Some((variable, initial)) = copy.result_id.zip(initial) {
+                            let operands = vec![Operand::IdRef(variable), initial];
+                            body.push(Instruction::new(Op::Store, None, None, operands));
                         }
                         body.variables.push(copy);
                     }

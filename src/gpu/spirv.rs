@@ -1,5 +1,5 @@
 //! From a module with constants of the pipeline to the SPIR-V of one kernel, in which every arithmetic operation is rounded as it
-//! is written.
+//! is written, and which calls no functions.
 //!
 //! WGSL lets a driver fuse, reorder and leave out operations, and drivers do so differently where a kernel differs in something
 //! else. SPIR-V has a decoration that forbids it, which naga does not write.

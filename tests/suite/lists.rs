@@ -144,7 +144,7 @@ fn the_device_leaves_out_nothing_at_any_tier() {
     let at_once = Tuning { in_place_below: 0.0, in_turn_from: 1e9, ..gpu.tuned.tuning };
     let in_place = Tuning { in_place_below: 1e9, ..at_once };
     let in_turn = Tuning { in_turn_from: 0.0, paths: 5, ..at_once };
-    // Tiles as small as they can be, too.
+    // Tiles as small as it helps, too.
     let small = |tuning: Tuning| Tuning { density: Density { longest_tile: 0.0, ..tuning.density }, ..tuning };
     let kernels: Vec<_> = Tier::ALL.into_iter().filter_map(|tier| gpu.kernel(tier).ok()).collect();
     for kernel in kernels {
