@@ -6,7 +6,7 @@
 
 fn body_in_grid(entry: u32, sphere: u32) -> Body {
     let at = entry - params.grid_entries;
-    var shape = Shape(vector_at(grid_shapes, at), vec3r(), 0u);
+    var shape = Shape(vector_at(grid_shapes, at), vec3r(), sphere);
     if SHAPE_ENDS {
         shape.inv_scale = vector_at(grid_shape_ends, at).xyz;
         shape.index = bits_at(grid_shape_ends, at);

@@ -11,8 +11,6 @@ override SHELLS: bool = true;
 // Object space differs from world space by more than a translation.
 override ELLIPSOIDS: bool = true;
 
-// Secondary rays meet their own sphere by its analytic other root only.
-override SKIP_SELF: bool = false;
 // The specular term is (N.H)^n instead of (R.V)^n.
 override BLINN: bool = false;
 

@@ -63,14 +63,12 @@ fn accepted_root(ray: Ray, body: Body, own: Own, range: Range) -> Root {
     var t = either(roots.greater, roots.lesser, is_lesser);
     var is_accepted = roots.exist & (is_lesser | (range.greater & is_beyond(roots.greater, range.t_min)));
     var inside = !is_lesser;
-    if SKIP_SELF {
-        // The outside of a convex surface is never met again.
-        let is_own = own.shape == body.shape.index;
-        let exit = distance_of(exit_root(own, direction_of(ray), body));
-        t = either(t, exit, is_own);
-        is_accepted = select(is_accepted, own.inside & is_beyond(exit, range.t_min), is_own);
-        inside |= is_own;
-    }
+    // The outside of a convex surface is never met again.
+    let is_own = own.shape == body.shape.index;
+    let exit = distance_of(exit_root(own, direction_of(ray), body));
+    t = either(t, exit, is_own);
+    is_accepted = select(is_accepted, own.inside & is_beyond(exit, range.t_min), is_own);
+    inside |= is_own;
     return Root(is_accepted & is_nearer(t, range.t_max), t, inside);
 }
 
@@ -90,10 +88,7 @@ fn nearer_hit(first: Hit, second: Hit, is_second: bool) -> Hit {
 
 // Whether a root that counts lies beyond t_min and before t = 1.
 fn blocks(ray: Ray, body: Body, own: Own, t_min: real) -> bool {
-    var is_blocked = root_between(ray, body, t_min);
-    if SKIP_SELF {
-        let t = exit_root(own, direction_of(ray), body);
-        is_blocked = select(is_blocked, own.inside & (t > t_min) & (t < real(1.0)), own.shape == body.shape.index);
-    }
-    return is_blocked;
+    let t = exit_root(own, direction_of(ray), body);
+    let is_own = own.shape == body.shape.index;
+    return select(root_between(ray, body, t_min), own.inside & (t > t_min) & (t < real(1.0)), is_own);
 }

@@ -17,11 +17,11 @@
 
 override LIGHT_COUNT: u32 = 0u;
 
-// Whether the second halves are there.
+// Whether the second halves are there: of ellipsoids, and of spheres that share surfaces.
 override SHAPE_ENDS: bool = true;
 
 fn shape_of(sphere: u32) -> Shape {
-    var shape = Shape(vector_at(shapes, sphere), vec3r(1.0), 0u);
+    var shape = Shape(vector_at(shapes, sphere), vec3r(1.0), sphere);
     if SHAPE_ENDS {
         shape.inv_scale = vector_at(shape_ends, sphere).xyz;
         shape.index = bits_at(shape_ends, sphere);
@@ -30,7 +30,7 @@ fn shape_of(sphere: u32) -> Shape {
 }
 
 fn low_shape_of(sphere: u32) -> Shape {
-    var shape = Shape(vector_at(shapes_low, sphere), vec3r(), 0u);
+    var shape = Shape(vector_at(shapes_low, sphere), vec3r(), sphere);
     if SHAPE_ENDS {
         shape.inv_scale = vector_at(shape_ends_low, sphere).xyz;
         shape.index = bits_at(shape_ends_low, sphere);

@@ -5,7 +5,7 @@
 //   the start of its ray, and the throughput;
 //   the direction, and the index of the sample's result, which is below 2^24;
 //   the colour gathered, and the shape index, below 2^24, of the sphere that the ray leaves;
-//   with SKIP_SELF the start in the object space of that sphere, and 1 where it is on the inner wall;
+//   the start in the object space of that sphere, and 1 where it is on the inner wall;
 //   for the tiers that carry it, what rounding took from the start.
 @group(0) @binding(11) var paths: Table;
 @group(0) @binding(18) var next_paths: texture_storage_2d<rgba32uint, write>;
@@ -30,11 +30,8 @@ fn path_of(index: u32) -> Path {
     let start = vector_at(paths, at);
     let way = vector_at(paths, at + 1u);
     let gathered = vector_at(paths, at + 2u);
-    var own = Own(NO_SHAPE, false, vec3r());
-    if SKIP_SELF {
-        let local = vector_at(paths, at + 3u);
-        own = Own(u32(gathered.w), local.w != real(0.0), local.xyz);
-    }
+    let local = vector_at(paths, at + 3u);
+    let own = Own(u32(gathered.w), local.w != real(0.0), local.xyz);
     var low = vec3r();
     if CARRIES_LOW {
         low = vector_at(paths, at + VECTORS - 1u).xyz;
@@ -58,14 +55,8 @@ fn reflect(surface: Surface, color: vec3r, throughput: real, slot: u32) {
     let at = atomicAdd(&stage.next_path_count, 1u) * VECTORS;
     keep(at, vec4r(high_of(ray.origin), throughput));
     keep(at + 1u, vec4r(direction_of(ray), real(slot)));
-    var shape = real(0.0);
-    if SKIP_SELF {
-        shape = real(surface.own.shape);
-    }
-    keep(at + 2u, vec4r(color, shape));
-    if SKIP_SELF {
-        keep(at + 3u, vec4r(surface.own.local, select(real(0.0), real(1.0), surface.own.inside)));
-    }
+    keep(at + 2u, vec4r(color, real(surface.own.shape)));
+    keep(at + 3u, vec4r(surface.own.local, select(real(0.0), real(1.0), surface.own.inside)));
     if CARRIES_LOW {
         keep(at + VECTORS - 1u, vec4r(low_of(ray.origin), real(0.0)));
     }

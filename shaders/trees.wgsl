@@ -1,16 +1,13 @@
 // In place of paths.wgsl where something refracts: from the hit of a primary ray on, its tree of reflections and refractions;
 // read it beside src/cpu/trace_refraction.rs. The host puts before it how many rays can wait: const MAX_WAITING.
 
-// Shadow and reflection rays meet their own sphere by its analytic other root only. Refraction rays always do, so SKIP_SELF is
-// true whatever the convention.
-override SKIP_SELF_ALWAYS: bool = false;
-
 // A refraction ray that waits until the reflected ray beside it has been followed to its end.
 struct Waiting {
     ray: Ray,
     own: Own,
     throughput: real,
     depth: u32,
+    shows_background: bool,
 }
 
 // The unclamped colour seen along the ray that has this hit: depth-first, the reflected ray first. Each depth leaves one
@@ -26,7 +23,7 @@ fn tree_color(primary: Ray, seen: Hit) -> vec3r {
     var depth = 0u;
     var waiting: array<Waiting, MAX_WAITING>;
     var count = 0u;
-    // One looks through glass at the background; a reflection ray that hits nothing adds black.
+    // One looks through glass at the background; a ray that was reflected and hits nothing adds black.
     var shows_background = true;
     loop {
         if !is_primary {
@@ -35,21 +32,15 @@ fn tree_color(primary: Ray, seen: Hit) -> vec3r {
         is_primary = false;
         if hit.found {
             let material = material_of(hit.sphere);
-            var surface = surface_at(ray, hit, material);
-            let wall = surface.own;
-            if !SKIP_SELF_ALWAYS {
-                surface.own.shape = NO_SHAPE;
-            }
+            let surface = surface_at(ray, hit, material);
             color += local_color(surface, material, true) * throughput;
 
             if depth < params.max_depth {
                 let kt = glasses[surface.sphere].kt;
                 if kt != real(0.0) {
-                    var through = surface;
-                    through.own = wall;
-                    let refracted = refraction_ray(ray, through);
+                    let refracted = refraction_ray(ray, surface);
                     let weight = min(throughput * kt, MAX_THROUGHPUT);
-                    waiting[count] = Waiting(refracted.ray, refracted.own, weight, depth + 1u);
+                    waiting[count] = Waiting(refracted.ray, refracted.own, weight, depth + 1u, shows_background);
                     count++;
                 }
                 if REFLECTIONS && material.kr != real(0.0) {
@@ -77,7 +68,7 @@ fn tree_color(primary: Ray, seen: Hit) -> vec3r {
         range = refraction_range();
         throughput = waiting[count].throughput;
         depth = waiting[count].depth;
-        shows_background = true;
+        shows_background = waiting[count].shows_background;
         if COUNT_RAYS {
             reflection_rays++;
         }

@@ -10,7 +10,7 @@ use glam::DVec3;
 use serde::{Serialize, Serializer};
 
 use crate::scene::{Light, Scene, Sphere};
-use crate::settings::{Secondary, Settings};
+use crate::settings::Settings;
 
 /// Something a renderer can simulate or leave out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
@@ -85,6 +85,11 @@ impl EffectSet {
     /// Whether `effect` is in the set.
     pub fn has(self, effect: Effect) -> bool {
         self.0 & effect.bit() != 0
+    }
+
+    /// Whether rays leave surfaces.
+    pub fn has_secondary_rays(self) -> bool {
+        [Effect::Shadows, Effect::Reflections, Effect::Refraction].into_iter().any(|effect| self.has(effect))
     }
 
     /// The set with `effect` in it or not.
@@ -372,9 +377,6 @@ impl<'a> Needs<'a> {
                 return Ok(format!("{} may be seen from inside, where it shadows itself", self.name(r)));
             }
             for (l, light) in lights.iter().enumerate().filter(|(_, l)| l.intensity != DVec3::ZERO) {
-                if !self.clear_of_itself(receiver, light) {
-                    return Ok(format!("{} is too far away for its own shadow to be ruled out", self.name(r)));
-                }
                 let blocker =
                     spheres.iter().enumerate().find(|&(b, blocker)| b != r && may_block(light, receiver, blocker));
                 if let Some((b, _)) = blocker {
@@ -387,15 +389,6 @@ impl<'a> Needs<'a> {
             Err("the only sphere is convex and seen from outside".into())
         } else {
             Err("no sphere stands between a light and a lit sphere".into())
-        }
-    }
-
-    /// Whether rounding in f32 can never make a convex sphere shadow itself.
-    fn clear_of_itself(&self, receiver: &Sphere, light: &Light) -> bool {
-        let distance = (light.position - receiver.center).length() - radius(receiver);
-        match self.settings.secondary {
-            Secondary::Epsilon { shadow, .. } => rounding(receiver) < shadow * distance,
-            Secondary::SkipSelf => true,
         }
     }
 
@@ -436,11 +429,7 @@ impl<'a> Needs<'a> {
     /// Whether a reflection ray that leaves this sphere can never start within rounding or epsilon of a surface.
     fn far_from_others(&self, index: usize) -> bool {
         let own = &self.scene.spheres[index];
-        let epsilon = match self.settings.secondary {
-            Secondary::Epsilon { reflection, .. } if rounding(own) < reflection => reflection,
-            Secondary::Epsilon { .. } => return false,
-            Secondary::SkipSelf => 0.0,
-        };
+        let epsilon = self.settings.secondary.reflection;
         self.scene.spheres.iter().enumerate().filter(|&(other, _)| other != index).all(|(_, other)| {
             let gap = (own.center - other.center).length() - radius(own) - radius(other);
             gap > 2.0 * epsilon + rounding(own) + rounding(other)

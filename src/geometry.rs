@@ -10,7 +10,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::scene::{Scene, Sphere, Window};
-use crate::settings::{Secondary, Settings};
+use crate::settings::Settings;
 
 /// An axis-aligned ellipsoid prepared for intersection.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -104,19 +104,30 @@ pub fn in_range<'a>(scene: &'a Scene, settings: &Settings) -> (Cow<'a, Scene>, S
     for light in &mut scene.lights {
         light.position *= k;
     }
-    if let Secondary::Epsilon { reflection, .. } = &mut settings.secondary {
-        *reflection *= k;
-    }
+    settings.secondary.reflection *= k;
     (Cow::Owned(scene), settings)
 }
 
-/// For each sphere the lowest index of a sphere with the bit-identical surface: rays that leave one leave them all.
-pub fn shape_indices(spheres: &[Ellipsoid]) -> Vec<u32> {
-    let mut indices: Vec<u32> = (0..spheres.len() as u32).collect();
-    let bits = |index: u32| spheres[index as usize].bits();
-    let mut order = indices.clone();
-    order.par_sort_unstable_by(|&a, &b| bits(a).cmp(&bits(b)).then(a.cmp(&b)));
-    for same in order.chunk_by(|&a, &b| bits(a) == bits(b)) {
+/// For each sphere the lowest index of a sphere with the bit-identical surface: rays that leave one leave them all. `None` where
+/// no two are the same.
+pub fn shape_indices(spheres: &[Sphere], true_axes: bool) -> Option<Vec<u32>> {
+    let bits = |index: u32| ellipsoid(&spheres[index as usize], true_axes).bits();
+    let hash = |bits: [u64; 7]| {
+        // Any mixing will do: equal surfaces have equal hashes, and what is sorted below is but those that have.
+        bits.into_iter().fold(0_u64, |hash, x| (hash.rotate_left(25) ^ x).wrapping_mul(0x9e37_79b9_7f4a_7c15))
+    };
+    let hashes: Vec<u64> = (0..spheres.len() as u32).into_par_iter().map(|index| hash(bits(index))).collect();
+    let repeated: Vec<u64> = {
+        let mut sorted = hashes.clone();
+        sorted.par_sort_unstable();
+        sorted.windows(2).filter(|pair| pair[0] == pair[1]).map(|pair| pair[0]).collect()
+    };
+    let mut order: Vec<u32> =
+        (0..spheres.len() as u32).filter(|&index| repeated.binary_search(&hashes[index as usize]).is_ok()).collect();
+    order.sort_unstable_by(|&a, &b| bits(a).cmp(&bits(b)).then(a.cmp(&b)));
+    let mut indices = None;
+    for same in order.chunk_by(|&a, &b| bits(a) == bits(b)).filter(|same| same.len() > 1) {
+        let indices = indices.get_or_insert_with(|| (0..spheres.len() as u32).collect::<Vec<_>>());
         for &index in same {
             indices[index as usize] = same[0];
         }

@@ -170,7 +170,7 @@ impl Demand {
             exponent: least,
         };
         // Secondary rays start on any surface.
-        let secondary = [Effect::Shadows, Effect::Reflections, Effect::Refraction].iter().any(|&e| effects.set.has(e));
+        let secondary = effects.set.has_secondary_rays();
         let bounds = scene.spheres.iter().map(|s| (s.center - s.scale.abs(), s.center + s.scale.abs()));
         let (low, high) = bounds.reduce(|(a, b), (c, d)| (a.min(c), b.max(d))).unwrap_or_default();
         let lights = scene.lights.iter().filter(|_| effects.set.has(Effect::Shadows)).map(|light| light.position);

@@ -53,19 +53,20 @@ impl Quantize {
     }
 }
 
-/// How shadow and reflection rays avoid the surface that they leave.
+/// From where on shadow and reflection rays meet a surface. The one that they leave they meet at its analytic roots, 0 and −2B/A.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Secondary {
-    /// Every sphere counts, the own one included, from a least distance on.
-    Epsilon {
-        /// Part of the way to the light beyond which a blocker counts, in 0..1.
-        shadow: f64,
-        /// Distance beyond which a reflection ray's hit counts, in world units.
-        reflection: f64,
-    },
-    /// The own sphere counts by its analytic other root, every other one from t > 0 on.
-    SkipSelf,
+pub struct Secondary {
+    /// Part of the way to the light beyond which a blocker counts, in 0..1.
+    pub shadow: f64,
+    /// Distance beyond which a reflection ray's hit counts, in world units.
+    pub reflection: f64,
+}
+
+impl Secondary {
+    /// The least distances of the official pictures.
+    pub const CLASSIC: Self = Self { shadow: 1e-3, reflection: 1e-3 };
+    /// Every surface counts from t > 0 on.
+    pub const EXACT: Self = Self { shadow: 0.0, reflection: 0.0 };
 }
 
 /// The specular term.
@@ -87,7 +88,7 @@ pub struct Settings {
     pub sampling: Sampling,
     /// Rounding of the 8-bit value.
     pub quantize: Quantize,
-    /// Self-hit rule of shadow and reflection rays.
+    /// Least distances of shadow and reflection rays.
     pub secondary: Secondary,
     /// Specular term.
     pub specular: Specular,
@@ -124,7 +125,7 @@ impl Settings {
             view: View::FILE,
             sampling: Sampling::Corner,
             quantize: Quantize::Truncate,
-            secondary: Secondary::Epsilon { shadow: 1e-3, reflection: 1e-3 },
+            secondary: Secondary::CLASSIC,
             specular: Specular::Phong,
             max_depth: 3,
             samples: 1,
@@ -133,30 +134,7 @@ impl Settings {
 
     /// The convention that the physics asks for.
     pub fn exact() -> Self {
-        Self {
-            sampling: Sampling::Center,
-            quantize: Quantize::Round,
-            secondary: Secondary::SkipSelf,
-            ..Self::classic()
-        }
-    }
-}
-
-impl Secondary {
-    /// The least t of a shadow ray, in parts of the way to the light.
-    pub fn shadow_t_min(self) -> f64 {
-        match self {
-            Self::Epsilon { shadow, .. } => shadow,
-            Self::SkipSelf => 0.0,
-        }
-    }
-
-    /// The least t of a reflection ray, in world units.
-    pub fn reflection_t_min(self) -> f64 {
-        match self {
-            Self::Epsilon { reflection, .. } => reflection,
-            Self::SkipSelf => 0.0,
-        }
+        Self { sampling: Sampling::Center, quantize: Quantize::Round, secondary: Secondary::EXACT, ..Self::classic() }
     }
 }
 

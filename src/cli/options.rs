@@ -26,8 +26,8 @@ pub(super) struct PictureOptions {
     /// How a colour becomes an 8-bit level
     #[arg(long, value_enum)]
     quantize: Option<QuantizeArg>,
-    /// Least distance of shadow and reflection hits, or `skip-self`
-    #[arg(long, value_name = "T|skip-self", value_parser = secondary)]
+    /// Least distance of shadow and reflection hits: 0 in the exact convention, there also called `skip-self`
+    #[arg(long, value_name = "T", value_parser = secondary)]
     secondary_epsilon: Option<Secondary>,
     /// Specular term
     #[arg(long, value_enum)]
@@ -225,10 +225,10 @@ enum SpecularArg {
 
 fn secondary(text: &str) -> Result<Secondary, String> {
     if text == "skip-self" {
-        return Ok(Secondary::SkipSelf);
+        return Ok(Secondary::EXACT);
     }
     match text.parse::<f64>() {
-        Ok(epsilon) if (0.0..1.0).contains(&epsilon) => Ok(Secondary::Epsilon { shadow: epsilon, reflection: epsilon }),
+        Ok(epsilon) if (0.0..1.0).contains(&epsilon) => Ok(Secondary { shadow: epsilon, reflection: epsilon }),
         _ => Err("expected a number from 0 to below 1, or `skip-self`".into()),
     }
 }

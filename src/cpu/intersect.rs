@@ -150,9 +150,10 @@ pub(crate) fn nearest_seen<T: Real>(world: &World<T>, ray: &Ray<T>, seen: &[u32]
 pub(crate) fn nearest_secondary<T: Real>(
     world: &World<T>,
     ray: &Ray<T>,
-    own: Option<&Own<T>>,
+    own: &Own<T>,
     range: &Range<T>,
 ) -> Option<Hit<T>> {
+    let own = Some(own);
     let grid = world.accel.grid.as_ref()?;
     let mut nearest = nearest_of(world, ray, own, range, grid.large(), None);
     for step in grid.walk(ray.origin.to_f64(), ray.direction.to_f64()) {
@@ -165,8 +166,8 @@ pub(crate) fn nearest_secondary<T: Real>(
 }
 
 /// Whether a root that counts lies beyond `t_min` and before t = 1: from where both ends lie, without a square root.
-pub(crate) fn blocks<T: Real>(ray: &Ray<T>, shape: &Shape<T>, own: Option<&Own<T>>, t_min: T) -> bool {
-    if let Some(own) = own.filter(|own| own.shape == shape.index) {
+pub(crate) fn blocks<T: Real>(ray: &Ray<T>, shape: &Shape<T>, own: &Own<T>, t_min: T) -> bool {
+    if own.shape == shape.index {
         let t = exit_root(own, ray.direction, shape);
         return own.inside && t > t_min && t < T::ONE;
     }
@@ -182,7 +183,7 @@ pub(crate) fn blocks<T: Real>(ray: &Ray<T>, shape: &Shape<T>, own: Option<&Own<T
 }
 
 /// Whether any sphere stands between the ray's origin and the light with this index at t = 1.
-pub(crate) fn any_hit<T: Real>(world: &World<T>, ray: &Ray<T>, own: Option<&Own<T>>, light: usize) -> bool {
+pub(crate) fn any_hit<T: Real>(world: &World<T>, ray: &Ray<T>, own: &Own<T>, light: usize) -> bool {
     let from_light = (-ray.direction).to_f64();
     let lights = &world.accel.lights;
     let distance = from_light.length() + lights.slack;

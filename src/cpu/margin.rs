@@ -276,14 +276,14 @@ impl Witness<f64> for Cone {
         }
     }
 
-    fn shadow(&mut self, world: &World<f64>, ray: &Ray<f64>, own: Option<&Own<f64>>) {
+    fn shadow(&mut self, world: &World<f64>, ray: &Ray<f64>, own: &Own<f64>) {
         if !self.shows_light {
             return;
         }
         let shadow = [Decision::ShadowEdge; 3];
         let direction = self.path.direction;
         self.path.direction = self.light.1;
-        self.watch_roots(world, ray, own, (world.shadow_t_min, 1.0), None, shadow);
+        self.watch_roots(world, ray, Some(own), (world.shadow_t_min, 1.0), None, shadow);
         self.path.direction = direction;
     }
 

@@ -132,7 +132,6 @@ fn glass_world<T: Real>(bodies: &[Body]) -> World<T> {
         shadow_t_min: T::ZERO,
         reflection: range,
         refraction: range,
-        skip_self: true,
         shadows: false,
         refracts: true,
         specular: Specular::Phong,

@@ -140,7 +140,7 @@ impl Tally {
 }
 
 impl<T: Real> Witness<T> for Tally {
-    fn shadow(&mut self, _world: &World<T>, _ray: &Ray<T>, _own: Option<&Own<T>>) {
+    fn shadow(&mut self, _world: &World<T>, _ray: &Ray<T>, _own: &Own<T>) {
         self.shadow += 1;
     }
 

@@ -8,7 +8,7 @@ use crate::camera::{Camera, NEAR_T_MIN};
 use crate::effects::{Effect, EffectSet, Effects};
 use crate::geometry::{Ellipsoid, ellipsoids, shape_indices};
 use crate::scene::{Light, Scene, Sphere};
-use crate::settings::{Secondary, Settings, Specular};
+use crate::settings::{Settings, Specular};
 
 /// One sphere: what the intersection reads.
 #[derive(Debug, Clone, Copy)]
@@ -77,8 +77,6 @@ pub(crate) struct World<T> {
     pub reflection: Range<T>,
     /// The roots that count along a refraction ray.
     pub refraction: Range<T>,
-    /// Whether shadow and reflection rays meet their own sphere by its analytic other root only; refraction rays always do.
-    pub skip_self: bool,
     pub shadows: bool,
     /// Whether there are refraction rays.
     pub refracts: bool,
@@ -98,8 +96,11 @@ impl<T: Real> World<T> {
     ) -> Self {
         let on = |effect| effects.set.has(effect);
         let ellipsoids = ellipsoids(scene, on(Effect::Ellipsoids));
-        let skip_self = settings.secondary == Secondary::SkipSelf;
-        let indices = if skip_self || on(Effect::Refraction) { shape_indices(&ellipsoids) } else { Vec::new() };
+        let indices = if effects.set.has_secondary_rays() {
+            shape_indices(&scene.spheres, on(Effect::Ellipsoids)).unwrap_or_default()
+        } else {
+            Vec::new()
+        };
         let shape = |(i, e): (usize, &Ellipsoid)| Shape {
             center: Vec3::from_f64(e.center),
             inv_scale: Vec3::from_f64(e.inv_scale),
@@ -115,10 +116,9 @@ impl<T: Real> World<T> {
             ambient: Vec3::from_f64(scene.ambient),
             background: Vec3::from_f64(scene.background),
             primary: if on(Effect::Shells) { range(NEAR_T_MIN, true) } else { range(0.0, false) },
-            shadow_t_min: T::from_f64(settings.secondary.shadow_t_min()),
-            reflection: range(settings.secondary.reflection_t_min(), true),
+            shadow_t_min: T::from_f64(settings.secondary.shadow),
+            reflection: range(settings.secondary.reflection, true),
             refraction: range(0.0, true),
-            skip_self,
             shadows: on(Effect::Shadows),
             refracts: on(Effect::Refraction),
             specular: settings.specular,

@@ -84,10 +84,9 @@ pub(crate) fn local_color<T: Real, W: Witness<T>>(world: &World<T>, surface: &Su
         if !lit {
             continue;
         }
-        let own = world.skip_self.then_some(&surface.own);
         if world.shadows {
-            witness.shadow(world, &shadow_ray, own);
-            if any_hit(world, &shadow_ray, own, index) {
+            witness.shadow(world, &shadow_ray, &surface.own);
+            if any_hit(world, &shadow_ray, &surface.own, index) {
                 continue;
             }
         }

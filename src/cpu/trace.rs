@@ -47,10 +47,9 @@ pub(crate) fn trace<T: Real, W: Witness<T>>(
             throughput = T::from_f64(MAX_THROUGHPUT);
         }
         ray = reflection_ray(&surface);
-        let own = world.skip_self.then_some(&surface.own);
-        hit = nearest_secondary(world, &ray, own, &world.reflection);
+        hit = nearest_secondary(world, &ray, &surface.own, &world.reflection);
         witness.reflected(throughput);
-        witness.nearest(world, &ray, own, &world.reflection, hit.as_ref());
+        witness.nearest(world, &ray, Some(&surface.own), &world.reflection, hit.as_ref());
     }
     color
 }

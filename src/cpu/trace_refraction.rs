@@ -16,6 +16,7 @@ struct Pending<T> {
     own: Own<T>,
     throughput: T,
     depth: u32,
+    shows_background: bool,
 }
 
 /// The unclamped colour seen along `primary`: depth-first, the reflected ray first. Each depth leaves one refraction ray
@@ -32,16 +33,13 @@ pub(super) fn trace_refraction<T: Real, W: Witness<T>>(
     let mut throughput = T::ONE;
     let mut depth = 0;
     let mut pending: Vec<Pending<T>> = Vec::new();
-    // One looks through glass at the background; a reflection ray that hits nothing adds black.
+    // One looks through glass at the background; a ray that was reflected and hits nothing adds black.
     let mut shows_background = true;
-    let mut is_primary = true;
     loop {
-        let hit = if is_primary {
-            nearest_seen(world, &ray, seen)
-        } else {
-            nearest_secondary(world, &ray, own.as_ref(), &range)
+        let hit = match &own {
+            None => nearest_seen(world, &ray, seen),
+            Some(own) => nearest_secondary(world, &ray, own, &range),
         };
-        is_primary = false;
         witness.nearest(world, &ray, own.as_ref(), &range, hit.as_ref());
         if let Some(found) = hit {
             let surface = surface_at(world, &ray, &found);
@@ -55,14 +53,14 @@ pub(super) fn trace_refraction<T: Real, W: Witness<T>>(
                     let (ray, own) = refraction_ray(&ray, &surface, &snell);
                     let throughput = weight(throughput, kt);
                     witness.refracted(world, &surface, &snell, throughput);
-                    pending.push(Pending { ray, own, throughput, depth: depth + 1 });
+                    pending.push(Pending { ray, own, throughput, depth: depth + 1, shows_background });
                 }
                 let kr = world.materials[surface.sphere].kr;
                 if kr != T::ZERO {
                     depth += 1;
                     throughput = weight(throughput, kr);
                     ray = reflection_ray(&surface);
-                    own = world.skip_self.then_some(surface.own);
+                    own = Some(surface.own);
                     range = world.reflection;
                     shows_background = false;
                     witness.reflected(throughput);
@@ -74,7 +72,7 @@ pub(super) fn trace_refraction<T: Real, W: Witness<T>>(
         }
         let Some(next) = pending.pop() else { return color };
         (ray, own, range) = (next.ray, Some(next.own), world.refraction);
-        (throughput, depth, shows_background) = (next.throughput, next.depth, true);
+        (throughput, depth, shows_background) = (next.throughput, next.depth, next.shows_background);
         witness.resumed();
     }
 }

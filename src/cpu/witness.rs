@@ -23,7 +23,7 @@ pub(crate) trait Witness<T: Real> {
     /// N·L of a light is known; only a positive one lights.
     fn lit(&mut self, _world: &World<T>, _surface: &Surface<T>, _light: &PointLight<T>, _n_dot_l: T) {}
     /// A shadow ray is about to be tested.
-    fn shadow(&mut self, _world: &World<T>, _ray: &Ray<T>, _own: Option<&Own<T>>) {}
+    fn shadow(&mut self, _world: &World<T>, _ray: &Ray<T>, _own: &Own<T>) {}
     /// A light has added its terms.
     fn shaded(&mut self, _world: &World<T>, _surface: &Surface<T>, _light: &PointLight<T>, _specular: T) {}
     /// A reflection ray with this weight is about to be followed.

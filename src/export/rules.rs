@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{Obstacle, Peer};
 use crate::effects::{Effect, Effects};
-use crate::geometry::{ellipsoids, shape_indices};
+use crate::geometry::shape_indices;
 use crate::scene::{Scene, Sphere, Window};
 use crate::settings::{Quantize, Settings};
 
@@ -131,7 +131,7 @@ impl Found<'_> {
         if effects.set.has(Effect::Specular) {
             self.obstacle(|s| s.ks != 0.0 && s.n == 0.0, "n = 0 shows no highlight where R·V ≤ 0, unlike here");
         }
-        let shapes = shape_indices(&ellipsoids(self.scene, true));
+        let shapes = shape_indices(&self.scene.spheres, true).unwrap_or_default();
         if let Some(twin) = shapes.iter().enumerate().position(|(index, &first)| index != first as usize) {
             let name = self.scene.sphere_names.get(twin);
             self.warnings.push(format!(

@@ -24,7 +24,7 @@ pub fn echo_layout(
     kernel: Kernel,
 ) -> Result<Vec<u32>, Error> {
     let accel = Acceleration::new(scene, &Camera::new(scene, settings), effects.set, kernel.rounding());
-    let packed = Packed::new(scene, settings, effects, kernel, &accel);
+    let packed = Packed::new(scene, settings, effects, kernel, &accel, None);
     let [head, sphere, light, tail] = COUNTS;
     let job = Job {
         what: "echoing the layout",

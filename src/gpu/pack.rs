@@ -12,9 +12,9 @@ use super::shader::Kernel;
 use crate::accel::{Acceleration, Lists};
 use crate::camera::{Camera, NEAR_T_MIN};
 use crate::effects::{Effect, EffectSet, Effects};
-use crate::geometry::{Ellipsoid, ellipsoid, ellipsoids, shape_indices};
+use crate::geometry::{Ellipsoid, ellipsoid};
 use crate::scene::{Light, Scene};
-use crate::settings::{Secondary, Settings};
+use crate::settings::Settings;
 use crate::tiles::TILE;
 
 /// Packs the elements of a range.
@@ -137,18 +137,20 @@ pub(super) struct Packed<'a> {
 }
 
 impl<'a> Packed<'a> {
-    /// Packs `scene` for a pipeline that simulates `effects` with `kernel`.
+    /// Packs `scene` for a pipeline that simulates `effects` with `kernel`; `indices` are those of its surfaces, where spheres
+    /// share some.
     pub(super) fn new(
         scene: &'a Scene,
         settings: &Settings,
         effects: &Effects,
         kernel: Kernel,
         accel: &Acceleration,
+        indices: Option<Vec<u32>>,
     ) -> Self {
         if kernel.is_double() {
-            pack::<double::Layout>(scene, settings, effects, false, accel)
+            pack::<double::Layout>(scene, settings, effects, false, accel, indices)
         } else {
-            pack::<single::Layout>(scene, settings, effects, kernel.carries_low(), accel)
+            pack::<single::Layout>(scene, settings, effects, kernel.carries_low(), accel, indices)
         }
     }
 }
@@ -164,17 +166,14 @@ fn pack<'a, L: Layout + 'a>(
     effects: &Effects,
     with_low: bool,
     accel: &Acceleration,
+    indices: Option<Vec<u32>>,
 ) -> Packed<'a> {
     let on = |effect| effects.set.has(effect);
     let camera = Camera::new(scene, settings);
     let true_axes = on(Effect::Ellipsoids);
-    let indices = match settings.secondary {
-        Secondary::Epsilon { .. } if !on(Effect::Refraction) => Vec::new(),
-        _ => shape_indices(&ellipsoids(scene, true_axes)),
-    };
     let indices = Arc::new(indices);
     let shape = move |i: usize| {
-        let index = indices.get(i).copied().unwrap_or(i as u32);
+        let index = indices.as_ref().as_ref().map_or(i as u32, |indices| indices[i]);
         shape_value(&ellipsoid(&scene.spheres[i], true_axes), index, true_axes)
     };
     let [columns, rows] = [scene.width, scene.height].map(|size| size.next_multiple_of(TILE) * settings.samples);
@@ -186,8 +185,8 @@ fn pack<'a, L: Layout + 'a>(
         background: scene.background,
         ambient: scene.ambient,
         primary_t_min: if on(Effect::Shells) { NEAR_T_MIN } else { 0.0 },
-        shadow_t_min: settings.secondary.shadow_t_min(),
-        reflection_t_min: settings.secondary.reflection_t_min(),
+        shadow_t_min: settings.secondary.shadow,
+        reflection_t_min: settings.secondary.reflection,
         quantize_bias: settings.quantize.bias(),
         window_rows: columns,
         lists: list_values(accel, &bases),

@@ -12,7 +12,7 @@ use super::upload::texel_format;
 use crate::accel::Grid;
 use crate::effects::{Effect, EffectSet, Effects};
 use crate::scene::Scene;
-use crate::settings::{Secondary, Settings, Specular};
+use crate::settings::{Settings, Specular};
 use crate::tuning::Tuning;
 
 /// Textures that a kernel reads and writes at the most, whatever it is specialised for.
@@ -27,8 +27,8 @@ pub struct Specialisation {
     pub effects: EffectSet,
     /// Where something refracts, how many rays wait at the most.
     pub refraction: Option<NonZeroU32>,
-    /// Whether shadow and reflection rays skip their own sphere.
-    pub skip_self: bool,
+    /// Whether spheres share surfaces, so that the own one is not told by the index of its sphere.
+    pub shared_surfaces: bool,
     /// Whether the specular term is (N·H)ⁿ.
     pub blinn: bool,
     /// How spheres and lights reach it.
@@ -64,8 +64,9 @@ impl Specialisation {
         Self {
             kernel,
             effects: effects.set,
-            refraction: NonZeroU32::new(effects.waiting(scene)),
-            skip_self: settings.secondary == Secondary::SkipSelf,
+            // In steps, so that scenes and depths share kernels.
+            refraction: NonZeroU32::new(effects.waiting(scene)).and_then(NonZeroU32::checked_next_power_of_two),
+            shared_surfaces: false,
             blinn: settings.specular == Specular::Blinn,
             storage: Storage::Tables(textures),
             lights: scene.lights.len() as u32,
@@ -108,12 +109,12 @@ impl Specialisation {
 
     /// Whether the intersection reads second halves of shapes.
     pub(super) fn reads_shape_ends(&self) -> bool {
-        self.effects.has(Effect::Ellipsoids) || self.skip_self || self.refraction.is_some()
+        self.effects.has(Effect::Ellipsoids) || self.shared_surfaces
     }
 
     /// Vectors that keep a path: as `shaders/paths.wgsl` has them.
     pub(super) fn path_vectors(&self) -> u64 {
-        3 + u64::from(self.skip_self) + u64::from(self.kernel.carries_low())
+        4 + u64::from(self.kernel.carries_low())
     }
 
     /// The constants by name; booleans are 0 and 1.
@@ -127,15 +128,12 @@ impl Specialisation {
             ("REFLECTIONS", on(Effect::Reflections)),
             ("SHELLS", on(Effect::Shells)),
             ("ELLIPSOIDS", on(Effect::Ellipsoids)),
-            ("SKIP_SELF", f64::from(self.skip_self || self.refraction.is_some())),
             ("BLINN", f64::from(self.blinn)),
             ("SAMPLES", f64::from(self.samples)),
             ("COUNT_RAYS", f64::from(self.count_rays)),
             ("GROUP", f64::from(self.workgroup)),
         ];
-        if self.refraction.is_some() {
-            constants.push(("SKIP_SELF_ALWAYS", f64::from(self.skip_self)));
-        } else if self.keeps_paths() {
+        if self.keeps_paths() {
             constants.push(("VECTORS", self.path_vectors() as f64));
             if let Walk::InTurn(paths) = self.walk {
                 constants.push(("PATHS", f64::from(paths.get())));

@@ -258,7 +258,7 @@ impl<'a> Prober<'a> {
         let specialisation = Specialisation {
             kernel: self.kernel,
             effects: EffectSet::ALL,
-            skip_self: true,
+            shared_surfaces: true,
             refraction: None,
             blinn: false,
             storage: Storage::Ranges,
@@ -413,7 +413,7 @@ fn pack<L: Layout>(
     };
     let spheres: Vec<_> = surfaces.iter().map(sphere).collect();
     let ellipsoids: Vec<_> = spheres.iter().map(Ellipsoid::new).collect();
-    let indices = shape_indices(&ellipsoids);
+    let indices = shape_indices(&spheres, true).unwrap_or_else(|| (0..spheres.len() as u32).collect());
     let shapes: Vec<_> = ellipsoids.iter().zip(indices).map(|(e, index)| shape_value(e, index, true)).collect();
     let numbers = |ray: &ProbeRay| {
         let (o, d) = (ray.origin, ray.direction);

@@ -23,7 +23,7 @@ use super::upload::empty_texels;
 use crate::accel::{Acceleration, Cover, Density, Rounding};
 use crate::camera::Camera;
 use crate::effects::{Effect, Effects};
-use crate::geometry::in_range;
+use crate::geometry::{in_range, shape_indices};
 use crate::precision::Tier;
 use crate::scene::Scene;
 use crate::settings::Settings;
@@ -156,7 +156,11 @@ impl<'a> GpuRenderer<'a> {
             accel = lists(&Density::LEAST);
         }
         let mut specialisation = specialisation.with_grid(accel.grid.as_ref(), tuning);
-        let packed = Packed::new(scene, settings, effects, kernel, &accel);
+        let leaves_surfaces = effects.set.has_secondary_rays();
+        let indices =
+            leaves_surfaces.then(|| shape_indices(&scene.spheres, effects.set.has(Effect::Ellipsoids))).flatten();
+        specialisation.shared_surfaces = indices.is_some();
+        let packed = Packed::new(scene, settings, effects, kernel, &accel, indices);
         if specialisation.variant().copies() && !copies_fit(gpu, &packed, &accel) {
             specialisation.walk = Walk::AtOnce;
         }

@@ -5,7 +5,7 @@ use super::protocol::FromPage;
 use crate::effects;
 use crate::precision;
 use crate::scene::{MAX_RESOLUTION, Scene};
-use crate::settings::{Secondary, Settings};
+use crate::settings::Settings;
 
 /// The picture that a page wishes.
 #[derive(Debug, Clone, PartialEq)]
@@ -105,10 +105,8 @@ impl Wishes {
             if quantize != classic.quantize {
                 words.push(format!("--quantize {}", name(serde_json::to_value(quantize))));
             }
-            match secondary {
-                _ if secondary == classic.secondary => {}
-                Secondary::SkipSelf => words.push("--secondary-epsilon skip-self".into()),
-                Secondary::Epsilon { shadow, .. } => words.push(format!("--secondary-epsilon {shadow:?}")),
+            if secondary != classic.secondary {
+                words.push(format!("--secondary-epsilon {:?}", secondary.shadow));
             }
             if specular != classic.specular {
                 words.push(format!("--specular {}", name(serde_json::to_value(specular))));

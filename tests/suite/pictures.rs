@@ -358,3 +358,28 @@ fn pictures_of_several_samples_differ_from_the_reference_only_where_explained() 
         }
     }
 }
+
+/// Mirrors meet themselves at analytic roots, not where rounding says: balls on a floor that is far larger than the epsilon.
+#[test]
+fn large_mirrors_show_no_acne() {
+    let Some(gpu) = gpu("large_mirrors_show_no_acne") else { return };
+    for radius in [100.0, 500.0, 5000.0, 15000.0] {
+        let mut scene = scene_of(&format!(
+            "SPHERE floor 0 {} -8 {radius} {radius} {radius} 0.6 0.6 0.5 0.2 0.5 0 0.3 1\n\
+             SPHERE a -1.5 0.1 -6 0.8 0.8 0.8 0.9 0.2 0.2 0.2 0.5 0.3 0.4 30\n\
+             SPHERE b 0.4 -0.2 -5 0.5 0.5 0.5 0.2 0.9 0.2 0.2 0.5 0.3 0.4 30\n\
+             SPHERE c 1.7 0.4 -8 1.1 1.1 1.1 0.2 0.2 0.9 0.2 0.5 0.3 0.4 30\n\
+             LIGHT l -3 5 0 0.7 0.7 0.7\nAMBIENT 0.4 0.4 0.4\nBACK 0.3 0.5 0.8",
+            -1.0 - radius
+        ));
+        (scene.width, scene.height) = (320, 240);
+        let settings = Settings::classic();
+        let effects = Effects::of(&scene, &settings);
+        let (expected, _) = cpu_picture::<f64>(&scene, &settings, &effects);
+        for tier in tiers(&gpu) {
+            let (picture, _) = gpu_picture(&gpu, tier, &scene, &settings, &effects);
+            let differing = picture.pixels().iter().zip(expected.pixels()).filter(|(a, b)| a != b).count();
+            assert!(differing <= 8, "radius {radius}, {tier}: {differing} pixels");
+        }
+    }
+}

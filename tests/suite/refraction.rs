@@ -149,6 +149,22 @@ fn pictures(scene: &Scene, settings: &Settings, test: &str) -> Vec<(String, Pict
     pictures
 }
 
+/// Nor in mirrors: behind them a ray shows black as long as it hits nothing, whatever it passes.
+#[test]
+fn air_is_not_seen_in_mirrors_either() {
+    let walls = "SPHERE m -1.5 0 -9 1 1 1 0.9 0.2 0.2 0.4 0.6 0.5 0.3 30\nSPHERE n 1.5 1 -9 1 1 1 0.2 0.9 0.2 0.4 0.6 0.5 0.3 30\n\
+                 LIGHT l 3 5 -7 0.8 0.8 0.8\nAMBIENT 0.5 0.5 0.5\nBACK 0.8 0.7 0.6\n";
+    let air = "SPHERE a 0 0 -3 1 1 1 0.5 0.5 0.5 0 0 0 0 1 1 1\nSPHERE b 0.2 0.1 -6 1 1 1 0.5 0.5 0.5 0 0 0 0 1 1 1\n";
+    for base in conventions() {
+        let settings = Settings { max_depth: 8, ..base };
+        let [with, without] = [format!("{walls}{air}"), walls.into()]
+            .map(|text| pictures(&scene_of(&text), &settings, "air_is_not_seen_in_mirrors_either"));
+        for ((name, with), (_, without)) in with.iter().zip(&without) {
+            assert!(with == without, "{name}");
+        }
+    }
+}
+
 /// Bodies of air in air cannot be seen.
 #[test]
 fn glass_with_an_index_of_one_is_invisible() {
@@ -177,9 +193,10 @@ fn each_depth_adds_what_it_must() {
     const KR: f64 = 0.5;
     const KT: f64 = 0.5;
     const BACK: f64 = 0.4;
-    // From inside, with so much depth left: the mirrored ray meets the wall again, the refracted one the background.
-    fn inner(depth: u32) -> f64 {
-        if depth == 0 { KA } else { KA + KR * inner(depth - 1) + KT * BACK }
+    // From inside, with so much depth left: the mirrored ray meets the wall again, the refracted one the background, which
+    // only rays show that were never mirrored.
+    fn inner(depth: u32, background: f64) -> f64 {
+        if depth == 0 { KA } else { KA + KR * inner(depth - 1, 0.0) + KT * background }
     }
     let mut scene =
         scene_of(&format!("SPHERE s 0 0 -5 1 1 1 1 1 1 {KA} 0 0 {KR} 1 {KT} 1.5\nAMBIENT 1 1 1\nBACK {BACK} 0 0"));
@@ -187,7 +204,7 @@ fn each_depth_adds_what_it_must() {
     for base in conventions() {
         for max_depth in 0..=12 {
             let settings = Settings { max_depth, sampling: Settings::exact().sampling, ..base };
-            let expected = if max_depth == 0 { KA } else { KA + KT * inner(max_depth - 1) };
+            let expected = if max_depth == 0 { KA } else { KA + KT * inner(max_depth - 1, BACK) };
             let effects = Effects::of(&scene, &settings);
             assert_eq!(effects.depth, max_depth);
             let color = Reference::<f64>::new(&scene, &settings, &effects).color(4, 4);

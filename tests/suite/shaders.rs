@@ -49,13 +49,13 @@ fn kinds() -> impl Iterator<Item = Variant> {
 /// What a pipeline of this variant may be specialised for.
 fn specialisation(variant: &Variant, effects: EffectSet, flags: usize) -> Specialisation {
     let Variant { kernel, storage, places, refraction, slots, walk, .. } = *variant;
-    let [skip_self, blinn, count_rays] = [1, 2, 4].map(|bit| flags & bit != 0);
+    let [shared_surfaces, blinn, count_rays] = [1, 2, 4].map(|bit| flags & bit != 0);
     let samples = if variant.samples { 2 } else { 1 };
     Specialisation {
         kernel,
         effects,
         refraction,
-        skip_self,
+        shared_surfaces,
         blinn,
         storage,
         lights: 2,
