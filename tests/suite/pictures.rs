@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use trueray::compare::Explanation;
+use trueray::compare::{Difference, Explanation};
 use trueray::cpu::{Judge, Reference};
 use trueray::effects::{Effect, EffectSet, Effects, Request};
 use trueray::engine::{Backend, Engine, render_bands};
@@ -378,8 +378,9 @@ fn large_mirrors_show_no_acne() {
         let (expected, _) = cpu_picture::<f64>(&scene, &settings, &effects);
         for tier in tiers(&gpu) {
             let (picture, _) = gpu_picture(&gpu, tier, &scene, &settings, &effects);
-            let differing = picture.pixels().iter().zip(expected.pixels()).filter(|(a, b)| a != b).count();
-            assert!(differing <= 8, "radius {radius}, {tier}: {differing} pixels");
+            // Acne was hundreds of them; what is left lies next to silhouettes and shadows.
+            let difference = Difference::between(&picture, &expected).unwrap();
+            assert!(difference.differing.over_1 <= 8, "radius {radius}, {tier}: {:?}", difference.differing);
         }
     }
 }
