@@ -109,6 +109,12 @@ impl Camera {
         self.samples
     }
 
+    /// The greatest coordinate of a point on the window.
+    pub fn greatest(&self) -> f64 {
+        let Window { near, left, right, bottom, top } = self.window;
+        [left, right, bottom, top].iter().fold(near, |greatest, edge| greatest.max(edge.abs()))
+    }
+
     /// Distance of the image plane.
     pub fn near(&self) -> f64 {
         self.window.near

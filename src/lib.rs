@@ -14,6 +14,7 @@ pub mod compare;
 pub mod cpu;
 pub mod effects;
 pub mod engine;
+pub mod exact;
 pub mod export;
 pub mod film;
 pub mod geometry;

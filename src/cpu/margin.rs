@@ -85,9 +85,9 @@ impl Judge {
     pub fn explain(&self, reference: &Reference<f64>, i: u32, j: u32, level: [u8; 3]) -> Option<Decision> {
         let mut decision = None;
         let (mut errors, mut magnitudes, mut count) = (DVec3::ZERO, DVec3::ZERO, 0.0);
-        for ray in reference.sample_rays(i, j) {
+        for primary in reference.primaries(i, j) {
             let mut cone = Cone::new(self);
-            let color = trace(&reference.world, ray, reference.seen(i, j), &mut cone).to_f64();
+            let color = trace(&reference.world, &primary, &mut cone).to_f64();
             // Each ray of a tree adds to a sum that rounds.
             errors += cone.color + color.abs() * (STEPS.max(cone.rays) * self.shading);
             magnitudes += color.abs();

@@ -1,11 +1,15 @@
 //! The scene in the scalar of the reference.
 
+use rayon::prelude::*;
+
 use super::intersect::Range;
 use super::real::Real;
+use super::tangent::Tangents;
 use super::vec3::Vec3;
 use crate::accel::{Acceleration, Rounding};
 use crate::camera::{Camera, NEAR_T_MIN};
 use crate::effects::{Effect, EffectSet, Effects};
+use crate::exact::ExactScene;
 use crate::geometry::{Ellipsoid, ellipsoids, shape_indices};
 use crate::scene::{Light, Scene, Sphere};
 use crate::settings::{Settings, Specular};
@@ -84,6 +88,10 @@ pub(crate) struct World<T> {
     pub max_depth: u32,
     /// Which spheres a ray can meet.
     pub accel: Acceleration,
+    /// Which primary rays may just touch a sphere,
+    pub tangents: Tangents,
+    /// and whether they do.
+    pub exact: ExactScene,
 }
 
 impl<T: Real> World<T> {
@@ -93,6 +101,8 @@ impl<T: Real> World<T> {
         effects: &Effects,
         camera: &Camera,
         rounding: Rounding,
+        exact: ExactScene,
+        eye: f64,
     ) -> Self {
         let on = |effect| effects.set.has(effect);
         let ellipsoids = ellipsoids(scene, on(Effect::Ellipsoids));
@@ -124,6 +134,8 @@ impl<T: Real> World<T> {
             specular: settings.specular,
             max_depth: effects.depth,
             accel: Acceleration::new(scene, camera, effects.set, rounding),
+            tangents: Tangents::of(ellipsoids.par_iter().copied(), eye, camera, T::ROUNDING.tests),
+            exact,
         }
     }
 }

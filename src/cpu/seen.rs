@@ -2,10 +2,13 @@
 
 use glam::DVec3;
 
-use super::intersect::{Range, Ray, accepted_root};
+use super::intersect::{Range, Ray, primary_root};
+use super::real::Real as _;
 use super::scene::Shape;
+use super::tangent::Tangents;
 use super::vec3::Vec3;
 use crate::camera::{Camera, NEAR_T_MIN};
+use crate::exact::ExactCamera;
 use crate::geometry::Ellipsoid;
 use crate::scene::Scene;
 use crate::settings::Settings;
@@ -28,16 +31,22 @@ pub struct Seen {
 pub fn seen_through(scene: &Scene, settings: &Settings, x: u32, y: u32) -> Option<Seen> {
     let camera = Camera::new(scene, settings);
     let middle = settings.samples / 2;
-    let direction = camera.column(x * settings.samples + middle) + camera.row(y * settings.samples + middle);
+    let sample = [x, y].map(|at| at * settings.samples + middle);
+    let direction = camera.column(sample[0]) + camera.row(sample[1]);
     let ray = Ray::<f64> { origin: Vec3::ZERO, direction: Vec3::from_f64(direction) };
     let eye = settings.view.eye;
     let mut range = Range { t_min: NEAR_T_MIN, t_max: f64::INFINITY, greater: true };
+    let exact = ExactCamera::new(scene, settings);
     let mut nearest = None;
     for (sphere, ellipsoid) in scene.spheres.iter().enumerate() {
-        let Ellipsoid { center, inv_scale, radius, .. } = Ellipsoid::with_axes(ellipsoid.center - eye, ellipsoid.scale);
+        let (center, semi_axes) = (ellipsoid.center, ellipsoid.scale);
+        let ellipsoid = Ellipsoid::with_axes(center - eye, semi_axes);
+        let tangents = Tangents::of(rayon::iter::once(ellipsoid), eye.length(), &camera, f64::ROUNDING.tests);
+        let touches = || exact.discriminant(sample, center, semi_axes);
+        let Ellipsoid { center, inv_scale, radius, .. } = ellipsoid;
         let (center, inv_scale) = (Vec3::from_f64(center), Vec3::from_f64(inv_scale));
         let shape = Shape { center, inv_scale, radius, index: sphere as u32 };
-        if let Some((t, inside)) = accepted_root(&ray, &shape, None, &range) {
+        if let Some((t, inside)) = primary_root(&ray, &shape, &range, &tangents, touches) {
             range.t_max = t;
             nearest = Some(Seen { sphere, t, position: eye + direction * t, inside });
         }

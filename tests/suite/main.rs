@@ -28,6 +28,7 @@ mod sketch;
 mod stress;
 mod study;
 mod support;
+mod tangents;
 mod tuning;
 #[cfg(feature = "view")]
 mod view;
