@@ -103,7 +103,7 @@ fn exact(x: f64) -> RBig {
     let text = format!("{x:e}");
     let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
     let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
-    let exponent = exponent.parse::<i64>().unwrap_or_default() - fraction.len() as i64;
+    let exponent = exponent.parse::<i32>().unwrap_or_default() - i32::try_from(fraction.len()).unwrap_or_default();
     let zeros = "0".repeat(exponent.unsigned_abs() as usize);
     let text = if exponent < 0 { format!("{whole}{fraction}/1{zeros}") } else { format!("{whole}{fraction}{zeros}") };
     text.parse().unwrap_or(RBig::ZERO)

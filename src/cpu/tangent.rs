@@ -7,6 +7,7 @@ use rayon::iter::ParallelIterator;
 use super::intersect::Approach;
 use super::real::Real;
 use super::scene::Shape;
+use super::shade::max;
 use crate::camera::Camera;
 use crate::geometry::{Ellipsoid, TangentMargin};
 
@@ -54,9 +55,8 @@ impl Tangents {
         let discriminant = match touches() {
             Ordering::Less => -T::ONE,
             Ordering::Equal => T::ZERO,
-            Ordering::Greater if at.discriminant > T::ZERO => at.discriminant,
-            // So near to touching that the scalar holds no smaller chord.
-            Ordering::Greater => T::ZERO,
+            // Where that is not positive the chord is shorter than the scalar can say.
+            Ordering::Greater => max(at.discriminant, T::ZERO),
         };
         Approach { discriminant, ..at }
     }
