@@ -48,13 +48,13 @@ fn tree_color(primary: Ray, seen: Hit) -> vec3r {
                     var through = surface;
                     through.own = wall;
                     let refracted = refraction_ray(ray, through);
-                    let weight = min(throughput * kt, MAX_THROUGHPUT);
+                    let weight = weakened(throughput, kt);
                     waiting[count] = Waiting(refracted.ray, refracted.own, weight, depth + 1u);
                     count++;
                 }
                 if REFLECTIONS && material.kr != real(0.0) {
                     depth += 1u;
-                    throughput = min(throughput * material.kr, MAX_THROUGHPUT);
+                    throughput = weakened(throughput, material.kr);
                     ray = reflection_ray(surface);
                     own = surface.own;
                     range = reflection_range();
