@@ -149,7 +149,8 @@ impl<'a> GpuRenderer<'a> {
         let (scene, settings) = (scene.as_ref(), &settings);
         let scalar = if kernel.is_double() { Scalar::Double } else { Scalar::Single };
         if let Some(why) = Brightness::of(scene, effects).problem(scene, scalar) {
-            return Err(Error::NoDevice(format!("{}: {why}", kernel.name())));
+            let help = "help: --precision double can, where the device has f64, and --device cpu";
+            return Err(Error::NoDevice(format!("{} cannot render this scene: {why}\n  {help}", kernel.name())));
         }
         let tuning = &gpu.tuned.tuning;
         let specialisation = Specialisation::new(scene, settings, effects, kernel, tuning, gpu.textures());
