@@ -7,9 +7,61 @@ use std::cmp::Ordering;
 
 use dashu_ratio::RBig;
 use glam::DVec3;
+use rayon::prelude::*;
 
+use crate::camera::Camera;
+use crate::geometry::Ellipsoid;
 use crate::scene::{Scene, Sphere};
 use crate::settings::Settings;
+
+/// How far rounding can move the discriminant r² − |perpendicular|² of a ray from the eye, in object space.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct TangentMargin {
+    /// Unit roundoff.
+    unit: f64,
+    /// Distance of the eye from the origin of the scene file.
+    eye: f64,
+    /// The greatest coordinate on the window, as rays have it.
+    window: f64,
+    /// The least length of a ray's direction.
+    shortest: f64,
+}
+
+impl TangentMargin {
+    /// For rays of `camera`, whose eye was moved to the origin from so far away, in arithmetic with this unit roundoff.
+    pub fn new(eye: f64, camera: &Camera, unit: f64) -> Self {
+        Self { unit, eye, window: camera.greatest() * camera.stretch(), shortest: camera.near() * camera.stretch() }
+    }
+
+    /// Of a ray that passes at `perpendicular` from the centre of a sphere, which is at `distance` from the eye, all in its object
+    /// space; where world vectors become at most `stretch` times as long there and the ray's direction becomes `length`.
+    ///
+    /// A direction is good to 16 u of the window's greatest coordinate (edge, difference, quotient, product, sum, and the turn
+    /// into the world); S' to 4 u of itself and, since centre and eye are rounded, 2 u of the eye's distance; and the steps to the
+    /// closest point, where an error along the ray does not count, to 4 u more. The square of the distance moves by twice what
+    /// the distance does; the radius and the last operations add less than 40 u.
+    pub fn of(&self, perpendicular: f64, distance: f64, stretch: f64, length: f64) -> f64 {
+        let moved = self.moved(distance, stretch, length);
+        moved * (2.0 * perpendicular + moved) + 40.0 * self.unit
+    }
+
+    fn moved(&self, distance: f64, stretch: f64, length: f64) -> f64 {
+        let distance = distance + 2.0 * self.eye * stretch;
+        self.unit * distance * (8.0 + 32.0 * self.window * stretch / length)
+    }
+
+    /// The greatest margin of a ray that may touch one of these, whose radii are in [1, 2).
+    pub fn widest(&self, ellipsoids: impl ParallelIterator<Item = Ellipsoid>) -> f64 {
+        let of = |e: Ellipsoid| {
+            let distance = (e.center * e.inv_scale).length();
+            let [most, least] = [e.inv_scale.max_element(), e.inv_scale.min_element()];
+            // Where |perpendicular|² − r² is within the margin, |perpendicular| is below 2.1 and 2.5 times what it moves.
+            let moved = self.moved(distance, most, least * self.shortest);
+            16.0 * (moved + moved * moved) + 40.0 * self.unit
+        };
+        ellipsoids.map(of).reduce(|| 0.0, f64::max)
+    }
+}
 
 /// The rays from the eye.
 #[derive(Debug, Clone, Default)]

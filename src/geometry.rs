@@ -9,9 +9,8 @@ use std::borrow::Cow;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::camera::Camera;
 use crate::scene::{Scene, Sphere, Window};
-use crate::settings::Settings;
+use crate::settings::{Secondary, Settings};
 
 /// An axis-aligned ellipsoid prepared for intersection.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,7 +52,7 @@ impl Ellipsoid {
 }
 
 /// The power of two k with `x`·k in [1, 2), for a positive normal `x`; subnormal scales are treated as the least normal one.
-fn reciprocal_power_of_two(x: f64) -> f64 {
+pub(crate) fn reciprocal_power_of_two(x: f64) -> f64 {
     const EXPONENT: u64 = 0x7ff << 52;
     let exponent = (x.to_bits() & EXPONENT).max(1 << 52);
     // 2^-(e - bias): bias 1023 gives the stored exponent 2046 - e; the two largest binades map to the least normal number.
@@ -79,34 +78,81 @@ pub fn range_factor(greatest: f64) -> f64 {
     if COMMON_EXTENT.contains(&greatest) { 1.0 } else { reciprocal_power_of_two(greatest) }
 }
 
-/// The scene as the kernels read it: with the eye at the origin, and in units in which squared lengths neither overflow nor
-/// underflow in `f32`, which a power of two makes of them without changing a digit, a root or a pixel. Distances in the
-/// settings follow.
+/// Lights are no farther away than this many times the extent of the spheres, 2⁵⁶: already the rays to them are parallel to
+/// less than `f64` can tell.
+const FARTHEST_LIGHT: f64 = (1_u64 << 56) as f64;
+
+/// The units in which the kernels read a scene whose eye is at the origin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Units {
+    /// A power of two by which all coordinates are multiplied.
+    pub factor: f64,
+    /// The greatest coordinate or semi-axis of a sphere, in the new units.
+    pub greatest: f64,
+    /// The greatest coordinate of a light, in the new units; beyond it lights come nearer along their direction.
+    farthest: f64,
+}
+
+impl Units {
+    /// Those in which squared lengths neither overflow nor underflow in `f32`. They go by the spheres: a light in the distance
+    /// does not make the spheres small.
+    pub fn of(scene: &Scene, secondary: Secondary) -> Self {
+        let spheres = scene.spheres.par_iter().map(|s| extent(s.center).max(extent(s.scale))).reduce(|| 0.0, f64::max);
+        let lights = scene.lights.iter().map(|light| extent(light.position)).fold(0.0, f64::max);
+        // The epsilon of shadow rays is a part of the way to the light: where a nearer light would bring it down to the size of
+        // the spheres, the light has to stay.
+        let may_move = secondary.shadow == 0.0 || secondary.shadow * FARTHEST_LIGHT > 64.0;
+        let greatest = if may_move { spheres } else { spheres.max(lights) };
+        let is_common = greatest == 0.0 || COMMON_EXTENT.contains(&greatest) && lights <= *COMMON_EXTENT.end();
+        let factor = if is_common { 1.0 } else { reciprocal_power_of_two(greatest) };
+        let farthest = if may_move && greatest > 0.0 { FARTHEST_LIGHT * (greatest * factor) } else { f64::INFINITY };
+        Self { factor, greatest: spheres * factor, farthest }
+    }
+
+    /// Where a light is in these units.
+    pub fn light(&self, position: DVec3) -> DVec3 {
+        let greatest = extent(position);
+        // Quotients, since products may leave the range.
+        if greatest <= self.farthest / self.factor {
+            return position * self.factor;
+        }
+        // Powers of two again, which leave the direction as it is to the last bit.
+        position * reciprocal_power_of_two(greatest) / reciprocal_power_of_two(self.farthest)
+    }
+
+    /// `scene` in these units.
+    pub fn applied_to<'a>(&self, scene: Cow<'a, Scene>) -> Cow<'a, Scene> {
+        if self.factor == 1.0 && scene.lights.iter().all(|light| self.light(light.position) == light.position) {
+            return scene;
+        }
+        let mut scene = scene.into_owned();
+        let Window { near, left, right, bottom, top } = scene.window;
+        let [near, left, right, bottom, top] = [near, left, right, bottom, top].map(|x| x * self.factor);
+        scene.window = Window { near, left, right, bottom, top };
+        for sphere in &mut scene.spheres {
+            sphere.center *= self.factor;
+            sphere.scale *= self.factor;
+        }
+        for light in &mut scene.lights {
+            light.position = self.light(light.position);
+        }
+        Cow::Owned(scene)
+    }
+}
+
+/// The greatest coordinate, without its sign.
+fn extent(v: DVec3) -> f64 {
+    v.abs().max_element()
+}
+
+/// The scene as the kernels read it: with the eye at the origin and in the [`Units`] of kernels, which changes neither a
+/// digit nor a root nor a pixel. Distances in the settings follow.
 pub fn in_range<'a>(scene: &'a Scene, settings: &Settings) -> (Cow<'a, Scene>, Settings) {
     let view = settings.view;
     let (scene, mut settings) = (view.relative(scene), Settings { view: view.at_origin(), ..*settings });
-    let extent = |v: DVec3| v.abs().max_element();
-    let spheres = scene.spheres.par_iter().map(|s| extent(s.center).max(extent(s.scale))).reduce(|| 0.0, f64::max);
-    let lights = scene.lights.iter().map(|light| extent(light.position));
-    let Window { near, left, right, bottom, top } = scene.window;
-    let window = [near, left.abs(), right.abs(), bottom.abs(), top.abs()];
-    let greatest = lights.chain(window).fold(spheres, f64::max);
-    let k = range_factor(greatest);
-    if k == 1.0 {
-        return (scene, settings);
-    }
-    let mut scene = scene.into_owned();
-    let [near, left, right, bottom, top] = [near, left, right, bottom, top].map(|x| x * k);
-    scene.window = Window { near, left, right, bottom, top };
-    for sphere in &mut scene.spheres {
-        sphere.center *= k;
-        sphere.scale *= k;
-    }
-    for light in &mut scene.lights {
-        light.position *= k;
-    }
-    settings.secondary.reflection *= k;
-    (Cow::Owned(scene), settings)
+    let units = Units::of(&scene, settings.secondary);
+    settings.secondary.reflection *= units.factor;
+    (units.applied_to(scene), settings)
 }
 
 /// For each sphere the lowest index of a sphere with the bit-identical surface: rays that leave one leave them all. `None` where
@@ -134,53 +180,4 @@ pub fn shape_indices(spheres: &[Sphere], true_axes: bool) -> Option<Vec<u32>> {
         }
     }
     indices
-}
-
-/// How far rounding can move the discriminant r² − |perpendicular|² of a ray from the eye, in object space.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct TangentMargin {
-    /// Unit roundoff.
-    unit: f64,
-    /// Distance of the eye from the origin of the scene file.
-    eye: f64,
-    /// The greatest coordinate on the window.
-    window: f64,
-    /// The least length of a ray's direction.
-    shortest: f64,
-}
-
-impl TangentMargin {
-    /// For rays of `camera`, whose eye was moved to the origin from so far away, in arithmetic with this unit roundoff.
-    pub fn new(eye: f64, camera: &Camera, unit: f64) -> Self {
-        Self { unit, eye, window: camera.greatest(), shortest: camera.near() }
-    }
-
-    /// Of a ray that passes at `perpendicular` from the centre of a sphere, which is at `distance` from the eye, all in its object
-    /// space; where world vectors become at most `stretch` times as long there and the ray's direction becomes `length`.
-    ///
-    /// A direction is good to 16 u of the window's greatest coordinate (edge, difference, quotient, product, sum, and the turn
-    /// into the world); S' to 4 u of itself and, since centre and eye are rounded, 2 u of the eye's distance; and the steps to the
-    /// closest point, where an error along the ray does not count, to 4 u more. The square of the distance moves by twice what
-    /// the distance does; the radius and the last operations add less than 40 u.
-    pub fn of(&self, perpendicular: f64, distance: f64, stretch: f64, length: f64) -> f64 {
-        let moved = self.moved(distance, stretch, length);
-        moved * (2.0 * perpendicular + moved) + 40.0 * self.unit
-    }
-
-    fn moved(&self, distance: f64, stretch: f64, length: f64) -> f64 {
-        let distance = distance + 2.0 * self.eye * stretch;
-        self.unit * distance * (8.0 + 32.0 * self.window * stretch / length)
-    }
-
-    /// The greatest margin of a ray that may touch one of these, whose radii are in [1, 2).
-    pub fn widest(&self, ellipsoids: impl ParallelIterator<Item = Ellipsoid>) -> f64 {
-        let of = |e: Ellipsoid| {
-            let distance = (e.center * e.inv_scale).length();
-            let [most, least] = [e.inv_scale.max_element(), e.inv_scale.min_element()];
-            // Where |perpendicular|² − r² is within the margin, |perpendicular| is below 2.1 and 2.5 times what it moves.
-            let moved = self.moved(distance, most, least * self.shortest);
-            16.0 * (moved + moved * moved) + 40.0 * self.unit
-        };
-        ellipsoids.map(of).reduce(|| 0.0, f64::max)
-    }
 }

@@ -9,7 +9,8 @@ use super::real::Real;
 use super::scene::Shape;
 use super::shade::max;
 use crate::camera::Camera;
-use crate::geometry::{Ellipsoid, TangentMargin};
+use crate::exact::TangentMargin;
+use crate::geometry::Ellipsoid;
 
 /// How far rounding can move discriminants of primary rays.
 #[derive(Debug, Clone, Copy, Default)]

@@ -10,7 +10,7 @@ use trueray::engine::{Backend, Engine, render_picture};
 use trueray::film::Picture;
 use trueray::gpu::{Choice, Gpu};
 use trueray::precision::Tier;
-use trueray::scene::{Scene, parse};
+use trueray::scene::{Scene, Window, parse};
 use trueray::settings::Settings;
 
 /// The one device of all tests, or `None`, said aloud, where there is none and none is required.
@@ -66,6 +66,20 @@ pub(crate) fn scene_of(statements: &str) -> Scene {
     let text = format!("NEAR 1\nLEFT -1\nRIGHT 1\nBOTTOM -1\nTOP 1\nRES 40 40\n{statements}");
     let parsed = parse("test", text.as_bytes());
     parsed.scene.clone().unwrap_or_else(|| panic!("{}", parsed.report(false)))
+}
+
+/// `scene` in other units.
+pub(crate) fn scaled(scene: &Scene, factor: f64) -> Scene {
+    let mut scene = scene.clone();
+    let Window { near, left, right, bottom, top } = scene.window;
+    let [near, left, right, bottom, top] = [near, left, right, bottom, top].map(|x| x * factor);
+    scene.window = Window { near, left, right, bottom, top };
+    for sphere in &mut scene.spheres {
+        sphere.center *= factor;
+        sphere.scale *= factor;
+    }
+    scene.lights.iter_mut().for_each(|light| light.position *= factor);
+    scene
 }
 
 /// The GPU's picture and its number of pixels that are not finite.
