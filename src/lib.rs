@@ -18,6 +18,7 @@ pub mod export;
 pub mod film;
 pub mod geometry;
 pub mod gpu;
+pub mod misuse;
 pub mod precision;
 mod random;
 mod report;

@@ -97,6 +97,7 @@ impl<T: Real> World<T> {
         rounding: Rounding,
     ) -> Self {
         let on = |effect| effects.set.has(effect);
+        let lit = on(Effect::Diffuse) || on(Effect::Specular);
         let ellipsoids = ellipsoids(scene, on(Effect::Ellipsoids));
         let skip_self = settings.secondary == Secondary::SkipSelf;
         let indices = if skip_self || on(Effect::Refraction) { shape_indices(&ellipsoids) } else { Vec::new() };
@@ -111,7 +112,8 @@ impl<T: Real> World<T> {
             shapes: ellipsoids.iter().enumerate().map(shape).collect(),
             materials: scene.spheres.iter().zip(&ellipsoids).map(|(s, e)| Material::new(s, e, effects.set)).collect(),
             glasses: scene.spheres.iter().filter(|_| on(Effect::Refraction)).map(Glass::new).collect(),
-            lights: scene.lights.iter().map(PointLight::new).collect(),
+            // Where nothing is lit, no light is asked for.
+            lights: scene.lights.iter().filter(|_| lit).map(PointLight::new).collect(),
             ambient: Vec3::from_f64(scene.ambient),
             background: Vec3::from_f64(scene.background),
             primary: if on(Effect::Shells) { range(NEAR_T_MIN, true) } else { range(0.0, false) },

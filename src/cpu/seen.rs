@@ -26,6 +26,9 @@ pub struct Seen {
 /// What pixel (column `x`, row `y`) shows: that of its samples which is next to the middle. Tries every sphere once, which is
 /// less work for a single ray than any list.
 pub fn seen_through(scene: &Scene, settings: &Settings, x: u32, y: u32) -> Option<Seen> {
+    if x >= scene.width || y >= scene.height {
+        return None;
+    }
     let camera = Camera::new(scene, settings);
     let middle = settings.samples / 2;
     let direction = camera.column(x * settings.samples + middle) + camera.row(y * settings.samples + middle);

@@ -17,9 +17,11 @@ mod export;
 mod film;
 mod keys;
 mod lists;
+mod misuse;
 mod oracle;
 mod parse;
 mod pictures;
+mod rays;
 mod refraction;
 mod sampling;
 mod shaders;
@@ -31,3 +33,4 @@ mod support;
 mod tuning;
 #[cfg(feature = "view")]
 mod view;
+mod wide;
