@@ -90,9 +90,9 @@ impl<T: Real> Reference<T> {
     ///
     /// [`Misuse::Rows`] where these are no rows of the picture.
     pub fn rows(&self, first: u32, rgb: &mut [u8]) -> Result<Tally, Misuse> {
-        check_rows(self.size(), first, rgb.len())?;
         // A few hundred pixels a task balance the load and keep the cost of a task invisible.
         const CHUNK: usize = 256;
+        check_rows(self.size(), first, rgb.len())?;
         let width = self.camera.width() as usize;
         let samples = u64::from(self.camera.samples() * self.camera.samples());
         let chunk = |(chunk, pixels): (usize, &mut [u8])| {

@@ -360,7 +360,7 @@ impl Gpu {
             #[allow(
                 unsafe_code,
                 reason = "naga has validated the module; its SPIR-V has some decorations more, and functions in the place of \
-                          their calls: tests hold that it is well formed"
+                          their calls: tests hold that it is well formed. Runtime checks it has none: see shader_module"
             )]
             unsafe {
                 self.device.create_shader_module_passthrough(wgpu::ShaderModuleDescriptorPassthrough {
@@ -384,7 +384,8 @@ impl Gpu {
             #[allow(
                 unsafe_code,
                 reason = "runtime checks cost up to 30 %: every index is below a length that the host set with the \
-                          buffers, every loop counts up to a bound, no integer is divided by 0"
+                          buffers, or has checked (src/misuse.rs, src/gpu/probe/check.rs), every loop counts up to a \
+                          bound, no integer is divided by 0"
             )]
             unsafe {
                 self.device.create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked())
