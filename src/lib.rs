@@ -21,6 +21,7 @@ pub mod film;
 pub mod geometry;
 pub mod gpu;
 pub mod limits;
+pub mod misuse;
 pub mod precision;
 mod random;
 mod report;

@@ -83,6 +83,7 @@ impl Judge {
     /// The decision that explains `level`, another renderer's 8-bit value of pixel (column `i`, row `j`) that differs from
     /// the reference's: the first on the paths of the pixel's samples that comes within its margin. `None`: the pixel is unexplained.
     pub fn explain(&self, reference: &Reference<f64>, i: u32, j: u32, level: [u8; 3]) -> Option<Decision> {
+        let color = reference.color(i, j)?;
         let mut decision = None;
         let (mut errors, mut magnitudes, mut count) = (DVec3::ZERO, DVec3::ZERO, 0.0);
         for primary in reference.primaries(i, j) {
@@ -94,7 +95,6 @@ impl Judge {
             count += 1.0;
             decision = decision.or(cone.decision);
         }
-        let color = reference.color(i, j);
         // Each addition rounds a sum that is no greater than that of all magnitudes, twice: the differences to the first.
         let summation = if count > 1.0 { magnitudes * (2.0 * self.shading) } else { DVec3::ZERO };
         let error = errors / count + summation;

@@ -14,6 +14,7 @@ use crate::camera::Camera;
 use crate::effects::{Effect, Effects};
 use crate::exact::ExactScene;
 use crate::geometry::in_range;
+use crate::misuse::{Misuse, check_pixels, check_rows};
 use crate::scene::Scene;
 use crate::settings::{Quantize, Settings};
 
@@ -51,9 +52,15 @@ impl<T: Real> Reference<T> {
         Ray { origin: Vec3::ZERO, direction }
     }
 
-    /// The unclamped colour of pixel (column `i`, row `j`).
-    pub fn color(&self, i: u32, j: u32) -> DVec3 {
-        self.pixel_color(i, j, &mut ()).to_f64()
+    /// Width and height of the picture.
+    pub fn size(&self) -> (u32, u32) {
+        (self.camera.width(), self.camera.height())
+    }
+
+    /// The unclamped colour of pixel (column `i`, row `j`); `None` where the picture has no such pixel.
+    pub fn color(&self, i: u32, j: u32) -> Option<DVec3> {
+        let (width, height) = self.size();
+        (i < width && j < height).then(|| self.pixel_color(i, j, &mut ()).to_f64())
     }
 
     /// The colour of a pixel: the mean over its samples, row by row, unclamped; read it beside `shaders/main.wgsl`. Taken
@@ -84,9 +91,14 @@ impl<T: Real> Reference<T> {
     }
 
     /// Renders whole rows from row `first` on into `rgb`, 3 bytes a pixel, in parallel.
-    pub fn rows(&self, first: u32, rgb: &mut [u8]) -> Tally {
+    ///
+    /// # Errors
+    ///
+    /// [`Misuse::Rows`] where these are no rows of the picture.
+    pub fn rows(&self, first: u32, rgb: &mut [u8]) -> Result<Tally, Misuse> {
         // A few hundred pixels a task balance the load and keep the cost of a task invisible.
         const CHUNK: usize = 256;
+        check_rows(self.size(), first, rgb.len())?;
         let width = self.camera.width() as usize;
         let samples = u64::from(self.camera.samples() * self.camera.samples());
         let chunk = |(chunk, pixels): (usize, &mut [u8])| {
@@ -101,13 +113,16 @@ impl<T: Real> Reference<T> {
             }
             tally
         };
-        rgb.par_chunks_mut(CHUNK * 3).enumerate().map(chunk).reduce(Tally::default, Tally::plus)
+        Ok(rgb.par_chunks_mut(CHUNK * 3).enumerate().map(chunk).reduce(Tally::default, Tally::plus))
     }
-}
 
-impl<T: Real> Reference<T> {
     /// Renders the pixels in these columns and rows, each with the value that it has in the full picture, in parallel.
-    pub fn pixels(&self, pixels: &[[u32; 2]], colors: &mut [[u8; 3]]) -> Tally {
+    ///
+    /// # Errors
+    ///
+    /// [`Misuse::Pixel`] where a pixel is not of the picture, [`Misuse::Colors`] where there is not one colour for each.
+    pub fn pixels(&self, pixels: &[[u32; 2]], colors: &mut [[u8; 3]]) -> Result<Tally, Misuse> {
+        check_pixels(self.size(), pixels, colors.len())?;
         let samples = u64::from(self.camera.samples() * self.camera.samples());
         let each = |(&[i, j], target): (&[u32; 2], &mut [u8; 3])| {
             let mut tally = Tally::default();
@@ -115,7 +130,7 @@ impl<T: Real> Reference<T> {
             *target = self.quantize.levels(color);
             tally.plus(Tally { primary: samples, not_finite: u64::from(!color.is_finite()), ..Tally::default() })
         };
-        pixels.par_iter().zip(colors).with_min_len(256).map(each).reduce(Tally::default, Tally::plus)
+        Ok(pixels.par_iter().zip(colors).with_min_len(256).map(each).reduce(Tally::default, Tally::plus))
     }
 }
 

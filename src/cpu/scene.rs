@@ -105,6 +105,7 @@ impl<T: Real> World<T> {
         eye: f64,
     ) -> Self {
         let on = |effect| effects.set.has(effect);
+        let lit = on(Effect::Diffuse) || on(Effect::Specular);
         let ellipsoids = ellipsoids(scene, on(Effect::Ellipsoids));
         let indices = if effects.set.has_secondary_rays() {
             shape_indices(&scene.spheres, on(Effect::Ellipsoids)).unwrap_or_default()
@@ -122,7 +123,8 @@ impl<T: Real> World<T> {
             shapes: ellipsoids.iter().enumerate().map(shape).collect(),
             materials: scene.spheres.iter().zip(&ellipsoids).map(|(s, e)| Material::new(s, e, effects.set)).collect(),
             glasses: scene.spheres.iter().filter(|_| on(Effect::Refraction)).map(Glass::new).collect(),
-            lights: scene.lights.iter().map(PointLight::new).collect(),
+            // Where nothing is lit, no light is asked for.
+            lights: scene.lights.iter().filter(|_| lit).map(PointLight::new).collect(),
             ambient: Vec3::from_f64(scene.ambient),
             background: Vec3::from_f64(scene.background),
             primary: if on(Effect::Shells) { range(camera.t_min(), true) } else { range(0.0, false) },

@@ -29,6 +29,9 @@ pub struct Seen {
 /// What pixel (column `x`, row `y`) shows: that of its samples which is next to the middle. Tries every sphere once, which is
 /// less work for a single ray than any list.
 pub fn seen_through(scene: &Scene, settings: &Settings, x: u32, y: u32) -> Option<Seen> {
+    if x >= scene.width || y >= scene.height {
+        return None;
+    }
     let (world, settings_in_range) = in_range(scene, settings);
     let camera = Camera::new(&world, &settings_in_range);
     let middle = settings.samples / 2;

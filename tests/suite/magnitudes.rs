@@ -25,7 +25,7 @@ fn cpu(scene: &Scene, settings: &Settings, rounding: Rounding) -> Vec<u8> {
     let mut rgb = vec![0; scene.width as usize * scene.height as usize * 3];
     let effects = Effects::of(scene, settings);
     let tally = Reference::<f64>::with_rounding(scene, settings, &effects, rounding).rows(0, &mut rgb);
-    assert_eq!(tally.not_finite, 0);
+    assert_eq!(tally.unwrap().not_finite, 0);
     rgb
 }
 
@@ -35,7 +35,7 @@ fn device(gpu: &Gpu, kernel: Kernel, scene: &Scene, settings: &Settings, roundin
     let effects = Effects::of(scene, settings);
     let mut renderer = GpuRenderer::with_rounding(gpu, scene, settings, &effects, kernel, rounding).ok()?;
     match renderer.rows(0, &mut rgb) {
-        Ok(not_finite) => assert_eq!(not_finite, 0),
+        Ok(rendered) => assert_eq!(rendered.not_finite, 0),
         Err(error) => {
             assert!(error.to_string().contains("turns of a loop"), "{error}");
             return None;

@@ -18,9 +18,11 @@ mod film;
 mod keys;
 mod lists;
 mod magnitudes;
+mod misuse;
 mod oracle;
 mod parse;
 mod pictures;
+mod rays;
 mod refraction;
 mod sampling;
 mod shaders;
@@ -33,3 +35,4 @@ mod tangents;
 mod tuning;
 #[cfg(feature = "view")]
 mod view;
+mod wide;

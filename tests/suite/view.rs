@@ -227,7 +227,7 @@ pub(crate) fn rendered(gpu: Option<&Gpu>, scene: &Scene, wishes: &Wishes) -> Vec
         let relative = settings.view.relative(&scene);
         Backend::Device(gpu, Selection::of(&relative, &effects, wishes.precision, gpu.ladder()).tier)
     });
-    render_picture(&mut Engine::new(backend, &scene, &settings, &effects).unwrap(), &scene).unwrap().0
+    render_picture(&mut Engine::new(backend, &scene, &settings, &effects).unwrap()).unwrap().0
 }
 
 #[test]
