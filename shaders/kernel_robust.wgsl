@@ -103,6 +103,13 @@ fn approach(ray: Ray, body: Body) -> Approach {
     return Approach(direction.hi, moment.hi, a, Pair(-minus_b.hi, -minus_b.lo), c, Pair(select(far.hi, near.hi, is_near), select(far.lo, near.lo, is_near)));
 }
 
+// Whether rounding could decide whether the line of a primary ray touches the sphere: src/exact.rs has the margin.
+fn may_touch(ray: Ray, body: Body) -> bool {
+    let at = approach(ray, body);
+    let radius = body.shape.center_radius.w;
+    return abs(at.discriminant.hi) < params.tangent_margin * (at.a.hi * (radius * radius));
+}
+
 // Both intersections of the line.
 struct Roots {
     // Whether there are any. Ordered comparisons decide: a NaN is never a hit.

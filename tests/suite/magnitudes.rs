@@ -147,7 +147,7 @@ fn odd_scene(seed: u64) -> (Scene, Settings) {
         }
     }
     // And all of it in other units.
-    let factor = if seed / 64 % 2 == 0 { 1.0 } else { 2_f64.powi((random.within(-1.0, 1.0) * most) as i32 * 2) };
+    let factor = if (seed / 64).is_multiple_of(2) { 1.0 } else { 2_f64.powi((random.within(-1.0, 1.0) * most) as i32 * 2) };
     (scaled(&scene, factor), settings)
 }
 
@@ -342,7 +342,7 @@ fn negative_mirrors_alternate_between_white_and_black() {
         for max_depth in 0..10 {
             let settings = Settings { max_depth, ..Settings::exact() };
             let effects = Effects::of(&scene, &settings);
-            let sum: f64 = (0..=max_depth).map(|bounce| kr.powi(bounce as i32)).sum();
+            let sum: f64 = (0..=max_depth).map(|bounce| kr.powi(bounce.cast_signed())).sum();
             let level = (255.0 * (0.5 * sum).clamp(0.0, 1.0) + 0.5) as u8;
             let (expected, not_finite) = cpu_picture::<f64>(&scene, &settings, &effects);
             assert_eq!(not_finite, 0);
