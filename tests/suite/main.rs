@@ -19,6 +19,7 @@ mod keys;
 mod lists;
 mod oracle;
 mod parse;
+mod phong;
 mod pictures;
 mod refraction;
 mod sampling;
