@@ -15,6 +15,7 @@ mod drivers;
 mod effects;
 mod export;
 mod film;
+mod golden;
 mod keys;
 mod lists;
 mod oracle;
