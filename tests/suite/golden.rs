@@ -109,7 +109,7 @@ impl Subject {
         if difference.differing.over_0 == 0 {
             return;
         }
-        let file = beside_each_other(&format!("{}-{who}", name.replace('/', "-")), expected, actual);
+        let file = beside_each_other(&format!("{name}-{who}"), expected, actual);
         panic!(
             "{name}: {who} differs from scenes/{name}.golden.png in {} pixels\n{}expected, {who} and difference: {}\n\
              to accept: TRUERAY_BLESS={name} sh tests/run.sh --test suite golden",
@@ -124,7 +124,7 @@ impl Subject {
 fn beside_each_other(name: &str, expected: &Picture, actual: &Picture) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("golden");
     std::fs::create_dir_all(&folder).unwrap();
-    let file = folder.join(format!("{name}.png"));
+    let file = folder.join(format!("{}.png", name.replace(['/', ' '], "-")));
     three_wide(expected, actual).unwrap().save(&Target::File(file.clone()), Format::Png).unwrap();
     file
 }
@@ -148,7 +148,7 @@ fn check_subject(test: &str, subject: &Subject) {
         Ok(reading) => reading.picture,
         Err(error) => panic!("{error}\nto accept one: TRUERAY_BLESS={name} sh tests/run.sh --test suite golden"),
     };
-    subject.compare("the reference", &expected, &reference);
+    subject.compare("reference", &expected, &reference);
 
     let Some(gpu) = gpu(test) else { return };
     let mut hashes = Vec::new();
@@ -164,7 +164,7 @@ fn check_subject(test: &str, subject: &Subject) {
     let recorded = Hashes::load();
     for (tier, hash, picture) in &hashes {
         if *tier == Tier::Double && gpu.info.f64 {
-            subject.compare("the device at double", &expected, picture);
+            subject.compare("device at double", &expected, picture);
         }
         let known = recorded.of(name, &tier.to_string());
         if known == Some(hash) {
@@ -174,7 +174,7 @@ fn check_subject(test: &str, subject: &Subject) {
             let reference = Reference::new(scene, settings, &effects);
             Explanation::of(picture, &expected, &reference, &Backend::Device(&gpu, *tier).judge())
         };
-        let file = beside_each_other(&format!("{}-{tier}", name.replace('/', "-")), &expected, picture);
+        let file = beside_each_other(&format!("{name}-{tier}"), &expected, picture);
         let says = format!(
             "{name} at {tier}: {} {} renders other bytes than those recorded with {} in scenes/hashes.txt ({hash}, not {}): {} \
              pixels differ from the reference, {} of them unexplained, see {}",

@@ -9,6 +9,7 @@
 
 mod bench;
 mod camera;
+mod claims;
 mod cli;
 mod compare;
 mod drivers;
