@@ -127,7 +127,7 @@ fn conventions() -> Vec<(String, Settings)> {
 }
 
 fn numbers(vectors: &[DVec3]) -> String {
-    vectors.iter().flat_map(|v| v.to_array()).map(|x| format!(" {x}")).collect()
+    vectors.iter().flat_map(DVec3::to_array).map(|x| format!(" {x}")).collect()
 }
 
 /// An ellipsoid with these semi-axes.
