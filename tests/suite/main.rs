@@ -9,18 +9,21 @@
 
 mod bench;
 mod camera;
+mod claims;
 mod cli;
 mod compare;
 mod drivers;
 mod effects;
 mod export;
 mod film;
+mod golden;
 mod keys;
 mod lists;
 mod magnitudes;
 mod misuse;
 mod oracle;
 mod parse;
+mod phong;
 mod pictures;
 mod rays;
 mod refraction;
