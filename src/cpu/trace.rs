@@ -24,8 +24,9 @@ pub(crate) fn trace<T: Real, W: Witness<T>>(
     }
     let mut ray = primary;
     let mut hit = nearest_seen(world, &ray, seen);
-    witness.nearest(world, &ray, None, &world.primary, hit.as_ref());
+    hit = witness.nearest(world, &ray, None, &world.primary, hit);
     if hit.is_none() {
+        witness.background(world);
         return world.background;
     }
     let mut color = Vec3::ZERO;
@@ -49,7 +50,7 @@ pub(crate) fn trace<T: Real, W: Witness<T>>(
         ray = reflection_ray(&surface);
         hit = nearest_secondary(world, &ray, &surface.own, &world.reflection);
         witness.reflected(throughput);
-        witness.nearest(world, &ray, Some(&surface.own), &world.reflection, hit.as_ref());
+        hit = witness.nearest(world, &ray, Some(&surface.own), &world.reflection, hit);
     }
     color
 }
