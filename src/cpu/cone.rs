@@ -31,8 +31,10 @@ pub(super) struct Cone<'a> {
     brightness: &'a Brightness,
     max_depth: u32,
     path: Path,
-    /// Of the refraction rays that wait.
-    waiting: Vec<Path>,
+    /// Of the refraction rays that wait, with what they count for in the colour of the ray that they go on from.
+    waiting: Vec<(Path, f64)>,
+    /// Kr of the surface last hit.
+    mirror: f64,
     /// Error of the unit normal of the surface last hit.
     normal: f64,
     /// Of the light in hand: the error of N·L, and that of the direction to it.
@@ -61,6 +63,7 @@ impl<'a> Cone<'a> {
             max_depth: world.max_depth,
             path: Path::primary(roundoff),
             waiting: Vec::new(),
+            mirror: 0.0,
             normal: 0.0,
             light: [0.0; 2],
             shows_light: true,
@@ -242,6 +245,7 @@ impl Witness<f64> for Cone<'_> {
         self.normal = error.normal;
         self.path = Path { position: error.position, own: Some(surface.own), ..self.path };
         let material = &world.materials[hit.sphere];
+        self.mirror = material.kr;
         let ka = Vec3::new(material.ka, material.ka, material.ka);
         self.spread.add_constant([world.ambient, material.color, ka]);
     }
@@ -294,8 +298,7 @@ impl Witness<f64> for Cone<'_> {
         let n_dot_l = surface.normal.dot(terms.to_light);
         let diffuse = [(n_dot_l - cosine_error).clamp(0.0, 1.0), (n_dot_l + cosine_error).clamp(0.0, 1.0)];
         let intensity = light.intensity.to_f64();
-        let weight = self.path.throughput;
-        self.spread.add_term(intensity * material.color.to_f64() * material.kd * weight, n_dot_l, diffuse);
+        self.spread.add_term(intensity * material.color.to_f64() * material.kd, n_dot_l, diffuse);
 
         let shading = self.roundoff.shading;
         let angle_error = match world.specular {
@@ -318,19 +321,18 @@ impl Witness<f64> for Cone<'_> {
             power * (1.0 + sign * steps * shading)
         };
         let range = [rounded(power(angle + angle_error), -1.0), rounded(power(angle - angle_error), 1.0)];
-        self.spread.add_term(intensity * material.ks * weight, specular_power(terms.d, material.n), range);
+        self.spread.add_term(intensity * material.ks, specular_power(terms.d, material.n), range);
     }
 
     fn reflected(&mut self, throughput: f64) {
         let direction = self.path.direction + 2.0 * self.normal + LENGTH * self.roundoff.shading;
-        let bounces = self.path.bounces + 1;
-        self.path = Path { direction, throughput, bounces, ..self.path };
-        self.spread.follow(throughput);
+        let ray = self.spread.follow(throughput, self.path.ray, self.mirror);
+        self.path = Path { direction, throughput, bounces: self.path.bounces + 1, ray, ..self.path };
     }
 
     fn refracted(
         &mut self,
-        _world: &World<f64>,
+        world: &World<f64>,
         surface: &Surface<f64>,
         snell: Snell<f64>,
         throughput: f64,
@@ -371,12 +373,15 @@ impl Witness<f64> for Cone<'_> {
         };
         let own = Own { inside: surface.own.inside ^ !is_total, ..surface.own };
         let bounces = self.path.bounces + 1;
-        self.waiting.push(Path { direction, throughput, bounces, own: Some(own), ..self.path });
+        let path = Path { direction, throughput, bounces, own: Some(own), ..self.path };
+        self.waiting.push((path, world.glasses[surface.sphere].kt));
         snell
     }
 
     fn resumed(&mut self) {
-        self.path = self.waiting.pop().unwrap_or(self.path);
-        self.spread.follow(self.path.throughput);
+        if let Some((path, coefficient)) = self.waiting.pop() {
+            let ray = self.spread.follow(path.throughput, path.ray, coefficient);
+            self.path = Path { ray, ..path };
+        }
     }
 }

@@ -61,13 +61,15 @@ pub(super) struct Path {
     /// Weight of what is gathered next.
     pub throughput: f64,
     pub bounces: u32,
+    /// Index among the rays of the tree.
+    pub ray: usize,
 }
 
 impl Path {
     /// Of a ray from the eye, whose direction is the sum of two rounded vectors.
     pub(super) fn primary(roundoff: Roundoff) -> Self {
         let direction = PLACE * roundoff.geometry;
-        Self { own: None, position: 0.0, direction, end: None, throughput: 1.0, bounces: 0 }
+        Self { own: None, position: 0.0, direction, end: None, throughput: 1.0, bounces: 0, ray: 0 }
     }
 }
 

@@ -1,6 +1,7 @@
 //! The CPU reference: the specification in `f64`, written to be read beside the shaders.
 
 mod cone;
+mod constants;
 mod dd;
 mod decision;
 mod fill;

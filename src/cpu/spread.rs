@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::constants::Constants;
 use super::margin::Roundoff;
 use super::render::levels;
 use super::scene::{Material, PointLight, World};
@@ -10,6 +11,8 @@ use crate::settings::Quantize;
 
 /// Roundings of a term of the colour: four inputs and three products of them, less what is rounded in fact.
 const TERM: f64 = 6.0;
+/// Units in the last place by which a product of a few `f64` may miss that of the decimals that they stand for.
+const DECIMAL: f64 = 4.0;
 
 /// The least and the greatest colour of something.
 #[derive(Debug, Clone, Copy)]
@@ -85,16 +88,13 @@ pub(super) struct Spread {
     /// How far the geometry may move the colour down and up.
     below: DVec3,
     above: DVec3,
-    /// Sum of the constants.
-    sum: DVec3,
     /// Sum of the sizes of all terms, and their number.
     sizes: DVec3,
     terms: f64,
-    /// While there is but one constant, a product of three factors: its least and greatest value in the renderer's arithmetic, which
-    /// may multiply them in any order.
-    single: Option<[DVec3; 2]>,
-    /// Whether nothing but constants has been added, none of which any renderer rounds.
-    is_exact: bool,
+    constants: Constants,
+    /// Whether nothing but constants has been added.
+    is_constant: bool,
+    /// Of the ray in hand.
     throughput: f64,
 }
 
@@ -105,42 +105,24 @@ impl Spread {
             roundoff,
             below: zero,
             above: zero,
-            sum: zero,
             sizes: zero,
             terms: 0.0,
-            single: Some([zero; 2]),
-            is_exact: true,
+            constants: Constants::new(roundoff.is_single()),
+            is_constant: true,
             throughput: 1.0,
         }
     }
 
-    /// What follows has this weight.
-    pub(super) fn follow(&mut self, throughput: f64) {
+    /// Goes on with a ray of this weight, which counts for `coefficient` in the colour of an earlier one; returns its index.
+    pub(super) fn follow(&mut self, throughput: f64, parent: usize, coefficient: f64) -> usize {
         self.throughput = throughput;
+        self.constants.follow(parent, coefficient)
     }
 
     /// Adds a product of constants.
     pub(super) fn add_constant(&mut self, factors: [Vec3<f64>; 3]) {
-        let factors = factors.map(Vec3::to_f64);
-        let product = factors[0] * factors[1] * factors[2] * self.throughput;
-        if product == DVec3::ZERO {
-            return;
-        }
-        let fits = |v: DVec3| single(v) == v;
-        let [a, b, c] = factors;
-        let partial = [a, b, c, a * b, a * b * c, DVec3::splat(self.throughput), product];
-        self.is_exact &= partial.into_iter().all(fits) && fits(self.sum + product);
-        let round = |v| if self.roundoff.is_single() { single(v) } else { v };
-        let orders = [[a, b, c], [b, c, a], [c, a, b]].map(|order| {
-            let [a, b, c] = order.map(round);
-            round(round(a * b) * c)
-        });
-        let is_first = self.terms == 0.0 && self.throughput == 1.0;
-        self.single =
-            is_first.then(|| [orders[0].min(orders[1]).min(orders[2]), orders[0].max(orders[1]).max(orders[2])]);
-        self.sum += product;
-        self.sizes += product.abs();
-        self.terms += 1.0;
+        self.constants.set(factors);
+        self.add_size((factors[0] * factors[1] * factors[2]).to_f64());
     }
 
     /// Adds a light's term, `coefficient` times what is `value` for the middle of the cone and lies in `range`.
@@ -148,12 +130,11 @@ impl Spread {
         if coefficient == DVec3::ZERO {
             return;
         }
-        let ends = range.map(|end| coefficient * (end - value));
+        let ends = range.map(|end| coefficient * (end - value) * self.throughput);
         self.below -= ends[0].min(ends[1]).min(DVec3::ZERO);
         self.above += ends[0].max(ends[1]).max(DVec3::ZERO);
-        self.sizes += (coefficient * value).abs();
-        self.terms += 1.0;
-        (self.single, self.is_exact) = (None, false);
+        self.add_size(coefficient * value);
+        self.is_constant = false;
     }
 
     /// Adds anything within `extent`, where the middle of the cone adds nothing.
@@ -161,18 +142,22 @@ impl Spread {
         let ends = [extent.low * self.throughput, extent.high * self.throughput];
         self.below -= ends[0].min(ends[1]);
         self.above += ends[0].max(ends[1]);
-        self.sizes += (ends[1] - ends[0]).abs();
-        self.terms += 1.0;
-        (self.single, self.is_exact) = (None, false);
+        self.add_size(extent.high - extent.low);
+        self.is_constant = false;
+    }
+
+    fn add_size(&mut self, term: DVec3) {
+        if term != DVec3::ZERO {
+            self.sizes += (term * self.throughput).abs();
+            self.terms += 1.0;
+        }
     }
 
     /// The colours around `color`, that of the middle of the cone.
     pub(super) fn around(self, color: DVec3) -> Shade {
-        if let Some([low, high]) = self.single {
+        if self.is_constant {
+            let [low, high] = self.constants.ends();
             return Shade { low: color.min(low), high: color.max(high), constant: Some(color) };
-        }
-        if self.is_exact {
-            return Shade { low: color, high: color, constant: Some(color) };
         }
         // Each addition rounds a sum that is no greater than that of all sizes.
         let rounding = self.sizes * ((TERM + self.terms) * self.roundoff.shading);
@@ -193,25 +178,21 @@ impl Shade {
     /// The least and the greatest levels of the shade.
     pub(super) fn levels(&self, quantize: Quantize, roundoff: Roundoff) -> [[u8; 3]; 2] {
         if let Some(color) = self.constant {
-            // In the renderer's own arithmetic; what is one value has no margin.
-            let levels = |color: DVec3| {
+            // What has one value has one level, but that of the file's decimals may be a step that the nearest numbers miss.
+            let own = |color: DVec3| {
                 if roundoff.is_single() {
                     levels(quantize, Vec3::<f32>::from_f64(color))
                 } else {
                     quantize.levels(color)
                 }
             };
-            let all = [quantize.levels(color), levels(self.low), levels(self.high)];
-            let each = |pick: fn(u8, u8) -> u8| [0, 1, 2].map(|c| pick(pick(all[0][c], all[1][c]), all[2][c]));
+            let decimal = quantize.levels(color * (1.0 + DECIMAL * f64::EPSILON));
+            let all = [quantize.levels(color), decimal, own(self.low), own(self.high)];
+            let each = |pick: fn(u8, u8) -> u8| [0, 1, 2].map(|c| all.iter().fold(all[0][c], |a, b| pick(a, b[c])));
             return [each(u8::min), each(u8::max)];
         }
         // 255·c + bias is rounded twice.
         let rounding = |color: DVec3| 2.0 * roundoff.shading * (color.abs() + quantize.bias() / 255.0);
         [quantize.levels(self.low - rounding(self.low)), quantize.levels(self.high + rounding(self.high))]
     }
-}
-
-/// The nearest colour in `f32`.
-fn single(color: DVec3) -> DVec3 {
-    color.as_vec3().as_dvec3()
 }
