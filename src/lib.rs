@@ -7,6 +7,7 @@
 
 pub mod accel;
 pub mod bench;
+pub mod brightness;
 mod cache;
 pub mod camera;
 pub mod cli;
@@ -14,10 +15,13 @@ pub mod compare;
 pub mod cpu;
 pub mod effects;
 pub mod engine;
+pub mod exact;
 pub mod export;
 pub mod film;
 pub mod geometry;
 pub mod gpu;
+pub mod limits;
+pub mod misuse;
 pub mod precision;
 mod random;
 mod report;

@@ -8,7 +8,7 @@ use super::margin::{ANGLE, Crossing, LENGTH, Margins, Path, Roundoff, length};
 use super::refract::Snell;
 use super::scene::{PointLight, World};
 use super::shade::{LightTerms, Surface, specular_power};
-use super::spread::{Brightness, Extent, Spread};
+use super::spread::{Gamut, Extent, Spread};
 use super::vec3::Vec3;
 use super::witness::Witness;
 use crate::settings::Specular;
@@ -28,7 +28,7 @@ struct Answer {
 pub(super) struct Cone<'a> {
     roundoff: Roundoff,
     surfaces: &'a [u32],
-    brightness: &'a Brightness,
+    gamut: &'a Gamut,
     max_depth: u32,
     path: Path,
     /// Of the refraction rays that wait, with what they count for in the colour of the ray that they go on from.
@@ -54,12 +54,12 @@ pub(super) struct Cone<'a> {
 
 impl<'a> Cone<'a> {
     pub(super) fn new(trial: &'a Trial, script: &'a [u32]) -> Self {
-        let Trial { reference, roundoff, surfaces, brightness } = trial;
+        let Trial { reference, roundoff, surfaces, gamut } = trial;
         let (world, roundoff) = (&reference.world, *roundoff);
         Self {
             roundoff,
             surfaces,
-            brightness,
+            gamut,
             max_depth: world.max_depth,
             path: Path::primary(roundoff),
             waiting: Vec::new(),
@@ -221,7 +221,7 @@ impl Witness<f64> for Cone<'_> {
         hit: Option<Hit<f64>>,
     ) -> Option<Hit<f64>> {
         if self.is_lost() {
-            self.spread.add_any(self.brightness.after(self.max_depth.saturating_sub(self.path.bounces)));
+            self.spread.add_any(self.gamut.after(self.max_depth.saturating_sub(self.path.bounces)));
             return None;
         }
         let answers = self.other_hits(world, ray, own, range, hit.as_ref());
@@ -274,7 +274,7 @@ impl Witness<f64> for Cone<'_> {
         self.light = [cosine, direction];
         // NaN: a light at distance 0 is anywhere.
         if !(angle < LOST) {
-            self.spread.add_any(Brightness::of_light(material, light));
+            self.spread.add_any(Gamut::of_light(material, light));
             return false;
         }
         let is_unsure = n_dot_l.abs() <= cosine;

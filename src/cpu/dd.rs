@@ -158,6 +158,7 @@ impl Real for Dd {
     const ZERO: Self = Self { hi: 0.0, lo: 0.0 };
     const ONE: Self = Self { hi: 1.0, lo: 0.0 };
     const FAR: Self = Self { hi: 3e38, lo: 0.0 };
+    const MAX_THROUGHPUT: Self = Self { hi: 1e280, lo: 0.0 };
     const ROUNDING: Rounding = Rounding::DOUBLE;
 
     #[inline]
@@ -168,6 +169,11 @@ impl Real for Dd {
     #[inline]
     fn to_f64(self) -> f64 {
         self.hi
+    }
+
+    #[inline]
+    fn abs(self) -> Self {
+        if self.hi < 0.0 { -self } else { self }
     }
 
     /// `SQRTDWtoDW`.

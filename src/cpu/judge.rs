@@ -11,7 +11,7 @@ use super::cone::Cone;
 use super::decision::Decision;
 use super::margin::Roundoff;
 use super::render::Reference;
-use super::spread::{Brightness, Shade};
+use super::spread::{Gamut, Shade};
 use super::trace::trace;
 use crate::precision::Tier;
 
@@ -58,7 +58,7 @@ impl Judge {
             reference,
             roundoff: Roundoff::of(self.tier),
             surfaces: surfaces.collect(),
-            brightness: Brightness::of(world),
+            gamut: Gamut::of(world),
         }
     }
 }
@@ -70,7 +70,7 @@ pub struct Trial<'a> {
     pub(super) roundoff: Roundoff,
     /// Indices of the spheres, of equal surfaces only the lowest, which wins on every device.
     pub(super) surfaces: Vec<u32>,
-    pub(super) brightness: Brightness,
+    pub(super) gamut: Gamut,
 }
 
 /// One path that a sample may take.
@@ -90,7 +90,7 @@ impl Trial<'_> {
             return None;
         }
         let (low, high) = (outcome.shade.low, outcome.shade.high);
-        let exact = self.reference.color(i, j);
+        let exact = self.reference.color(i, j)?;
         let up = (color - exact) / (high - exact);
         let down = (exact - color) / (exact - low);
         let r = up.max(down);
@@ -104,8 +104,8 @@ impl Trial<'_> {
                 eprintln!("{o:?} {:?} {:?}", o.shade.levels(self.reference.quantize, self.roundoff), level);
             }
         }
-        let rays: Vec<_> = self.reference.sample_rays(i, j).collect();
-        if let [_] = rays[..] {
+        let count = self.reference.primaries(i, j).count();
+        if count == 1 {
             let mut paths = Paths::new(self, i, j, 0);
             for outcome in paths.by_ref() {
                 if is_within(level, outcome.shade.levels(self.reference.quantize, self.roundoff)) {
@@ -115,8 +115,8 @@ impl Trial<'_> {
             return if paths.is_exhausted() { Finding::Unexplained } else { Finding::Undecided };
         }
         let mut is_exhausted = true;
-        let mut samples = Vec::with_capacity(rays.len());
-        for sample in 0..rays.len() {
+        let mut samples = Vec::with_capacity(count);
+        for sample in 0..count {
             let mut paths = Paths::new(self, i, j, sample);
             let mut outcomes: Vec<Outcome> = Vec::new();
             for outcome in paths.by_ref() {
@@ -178,9 +178,9 @@ impl Iterator for Paths<'_> {
         self.traced += 1;
         let reference = self.trial.reference;
         let [i, j] = self.pixel;
-        let ray = reference.sample_rays(i, j).nth(self.sample)?;
+        let primary = reference.primaries(i, j).nth(self.sample)?;
         let mut cone = Cone::new(self.trial, &script);
-        let color = trace(&reference.world, ray, reference.seen(i, j), &mut cone).to_f64();
+        let color = trace(&reference.world, &primary, &mut cone).to_f64();
         let (others, flipped) = (std::mem::take(&mut cone.others), cone.flipped);
         let outcome = Outcome { shade: cone.into_spread().around(color), flipped };
         for (place, &count) in others.iter().enumerate() {

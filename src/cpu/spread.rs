@@ -38,14 +38,14 @@ impl Extent {
     }
 }
 
-/// How bright anything in a world may be.
+/// The colours that anything in a world may have.
 #[derive(Debug, Clone)]
-pub(super) struct Brightness {
+pub(super) struct Gamut {
     /// Of what a ray may see that so many bounces follow.
     after: Vec<Extent>,
 }
 
-impl Brightness {
+impl Gamut {
     pub(super) fn of(world: &World<f64>) -> Self {
         let mut surface = Extent::NONE;
         let (mut mirrored, mut refracted) = (0.0_f64, 0.0_f64);

@@ -1,12 +1,12 @@
 //! A pixel's colour where something refracts: the primary ray and its tree of reflections and refractions; read it beside
 //! `shaders/trace_refraction.wgsl`.
 
-use super::intersect::{Own, Ray, nearest_secondary, nearest_seen};
+use super::intersect::{Own, Primary, Ray, nearest_secondary, nearest_seen};
 use super::real::Real;
 use super::refract::{Snell, refraction_ray};
 use super::scene::World;
 use super::shade::{local_color, surface_at};
-use super::trace::{MAX_THROUGHPUT, reflection_ray};
+use super::trace::reflection_ray;
 use super::vec3::Vec3;
 use super::witness::Witness;
 
@@ -24,11 +24,10 @@ struct Pending<T> {
 #[inline(never)]
 pub(super) fn trace_refraction<T: Real, W: Witness<T>>(
     world: &World<T>,
-    primary: Ray<T>,
-    seen: &[u32],
+    primary: &Primary<T>,
     witness: &mut W,
 ) -> Vec3<T> {
-    let (mut ray, mut own, mut range) = (primary, None, world.primary);
+    let (mut ray, mut own, mut range) = (primary.ray, None, world.primary);
     let mut color = Vec3::ZERO;
     let mut throughput = T::ONE;
     let mut depth = 0;
@@ -37,7 +36,7 @@ pub(super) fn trace_refraction<T: Real, W: Witness<T>>(
     let mut shows_background = true;
     loop {
         let hit = match &own {
-            None => nearest_seen(world, &ray, seen),
+            None => nearest_seen(world, primary),
             Some(own) => nearest_secondary(world, &ray, own, &range),
         };
         let hit = witness.nearest(world, &ray, own.as_ref(), &range, hit);
@@ -49,7 +48,7 @@ pub(super) fn trace_refraction<T: Real, W: Witness<T>>(
             if depth < world.max_depth {
                 let kt = world.glasses[surface.sphere].kt;
                 if kt != T::ZERO {
-                    let throughput = weight(throughput, kt);
+                    let throughput = throughput.weakened(kt);
                     let snell = witness.refracted(world, &surface, Snell::at(world, &surface), throughput);
                     let (ray, own) = refraction_ray(&ray, &surface, &snell);
                     pending.push(Pending { ray, own, throughput, depth: depth + 1, shows_background });
@@ -57,7 +56,7 @@ pub(super) fn trace_refraction<T: Real, W: Witness<T>>(
                 let kr = world.materials[surface.sphere].kr;
                 if kr != T::ZERO {
                     depth += 1;
-                    throughput = weight(throughput, kr);
+                    throughput = throughput.weakened(kr);
                     ray = reflection_ray(&surface);
                     own = Some(surface.own);
                     range = world.reflection;
@@ -75,10 +74,4 @@ pub(super) fn trace_refraction<T: Real, W: Witness<T>>(
         (throughput, depth, shows_background) = (next.throughput, next.depth, next.shows_background);
         witness.resumed();
     }
-}
-
-/// The weight of a ray that `coefficient` of what has this weight follows.
-fn weight<T: Real>(throughput: T, coefficient: T) -> T {
-    let product = throughput * coefficient;
-    if product > T::from_f64(MAX_THROUGHPUT) { T::from_f64(MAX_THROUGHPUT) } else { product }
 }
