@@ -13,7 +13,6 @@ use crate::cpu::{Judge, Reference};
 use crate::engine::{Backend, Engine, render_picture};
 use crate::film::{Format, Leniency, Picture, Target, read_picture};
 use crate::gpu::Choice;
-use crate::precision::Tier;
 
 /// Arguments of `trueray compare`.
 #[derive(Debug, clap::Args)]
@@ -176,8 +175,8 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Subje
     let settings = args.picture.settings()?;
     let effects = args.picture.renderable_effects(scene, &settings)?;
     let (name, picture, not_finite, judge) = if let Some(path) = picture {
-        // A picture of unknown origin is judged as that of the tier asked for, or else of plain f32.
-        let judge = Judge::of(args.device.precision.0.unwrap_or(Tier::Fast));
+        // A picture of unknown origin is judged as that of the tier asked for, or else of the one that `auto` takes.
+        let judge = Judge::of(args.device.selection(None, scene, &settings, &effects).tier);
         (path.display().to_string(), read(path, args.lenient)?, None, judge)
     } else {
         // Comparing the reference with itself would say nothing: auto means a device here.

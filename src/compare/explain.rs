@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::cpu::{Decision, Judge, Reference};
+use crate::cpu::{Decision, Finding, Judge, Reference};
 use crate::film::Picture;
+use crate::precision::Tier;
 
 /// How many unexplained pixels are listed one by one.
 const LISTED: usize = 20;
@@ -14,13 +15,17 @@ const LISTED: usize = 20;
 /// Why the pixels of a picture differ from the reference.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Explanation {
+    /// The tier whose rounding has explained them.
+    pub judged_as: Tier,
     /// Pixels that differ.
     pub differing: u64,
     /// Differing pixels for each decision that explains them.
     pub explained: BTreeMap<Decision, u64>,
-    /// Differing pixels that no decision explains: the verdict.
+    /// Differing pixels that nothing explains: the verdict.
     pub unexplained: u64,
-    /// The first of those, in reading order.
+    /// Those of them for which rounding leaves more paths than are tried.
+    pub undecided: u64,
+    /// The first of the unexplained, in reading order.
     pub listed: Vec<UnexplainedPixel>,
 }
 
@@ -45,25 +50,33 @@ impl Explanation {
     /// If the two pictures differ in size.
     pub fn of(picture: &Picture, expected: &Picture, reference: &Reference<f64>, judge: &Judge) -> Self {
         assert_eq!((picture.width(), picture.height()), (expected.width(), expected.height()), "sizes");
+        let trial = judge.trial(reference);
         let width = picture.width();
         let pairs = picture.pixels().par_iter().zip(expected.pixels()).enumerate();
         let differing: Vec<_> = pairs
             .filter(|(_, (value, reference))| value != reference)
             .map(|(index, (&value, &expected))| {
                 let (x, y) = ((index % width as usize) as u32, (index / width as usize) as u32);
-                (judge.explain(reference, x, y, value), UnexplainedPixel { x, y, value, reference: expected })
+                (trial.explain(x, y, value), UnexplainedPixel { x, y, value, reference: expected })
             })
             .collect();
-        let mut explanation =
-            Self { differing: differing.len() as u64, explained: BTreeMap::new(), unexplained: 0, listed: Vec::new() };
-        for (decision, pixel) in differing {
-            if let Some(decision) = decision {
+        let mut explanation = Self {
+            judged_as: judge.tier(),
+            differing: differing.len() as u64,
+            explained: BTreeMap::new(),
+            unexplained: 0,
+            undecided: 0,
+            listed: Vec::new(),
+        };
+        for (finding, pixel) in differing {
+            if let Finding::Explained(decision) = finding {
                 *explanation.explained.entry(decision).or_default() += 1;
-            } else {
-                explanation.unexplained += 1;
-                if explanation.listed.len() < LISTED {
-                    explanation.listed.push(pixel);
-                }
+                continue;
+            }
+            explanation.unexplained += 1;
+            explanation.undecided += u64::from(finding == Finding::Undecided);
+            if explanation.listed.len() < LISTED {
+                explanation.listed.push(pixel);
             }
         }
         explanation
@@ -72,11 +85,14 @@ impl Explanation {
     /// A table for people.
     pub fn report(&self) -> String {
         use std::fmt::Write as _;
-        let mut text = format!("differing pixels  {}\n", self.differing);
+        let mut text = format!("judged as         {}\ndiffering pixels  {}\n", self.judged_as, self.differing);
         for (decision, count) in &self.explained {
             let _ = writeln!(text, "  {count:>8}  {}", decision.name());
         }
         let _ = writeln!(text, "  {:>8}  unexplained", self.unexplained);
+        if self.undecided > 0 {
+            let _ = writeln!(text, "  {:>8}  of them with more paths than are tried", self.undecided);
+        }
         for UnexplainedPixel { x, y, value, reference } in &self.listed {
             let _ = writeln!(text, "            x {x}, y {y}: {value:?}, reference {reference:?}");
         }

@@ -1,8 +1,12 @@
 //! The CPU reference: the specification in `f64`, written to be read beside the shaders.
 
+mod cone;
+mod constants;
 mod dd;
+mod decision;
 mod fill;
 mod intersect;
+mod judge;
 mod margin;
 pub mod oracle;
 mod real;
@@ -11,6 +15,7 @@ mod render;
 mod scene;
 mod seen;
 mod shade;
+mod spread;
 mod tangent;
 mod trace;
 mod trace_refraction;
@@ -18,8 +23,9 @@ mod vec3;
 mod witness;
 
 pub use dd::Dd;
+pub use decision::Decision;
 pub use fill::{filled, nearest_samples};
-pub use margin::{Decision, Judge};
+pub use judge::{Finding, Judge, Trial};
 pub use real::Real;
 pub use render::{Reference, Tally};
 pub use seen::{Seen, seen_through};

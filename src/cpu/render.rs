@@ -106,10 +106,10 @@ impl<T: Real> Reference<T> {
             for (k, pixel) in pixels.as_chunks_mut::<3>().0.iter_mut().enumerate() {
                 let index = chunk * CHUNK + k;
                 let (i, j) = ((index % width) as u32, first + (index / width) as u32);
-                let color = self.pixel_color(i, j, &mut tally).to_f64();
+                let color = self.pixel_color(i, j, &mut tally);
                 tally.primary += samples;
-                tally.not_finite += u64::from(!color.is_finite());
-                *pixel = self.quantize.levels(color);
+                tally.not_finite += u64::from(!color.to_f64().is_finite());
+                *pixel = levels(self.quantize, color);
             }
             tally
         };
@@ -126,12 +126,24 @@ impl<T: Real> Reference<T> {
         let samples = u64::from(self.camera.samples() * self.camera.samples());
         let each = |(&[i, j], target): (&[u32; 2], &mut [u8; 3])| {
             let mut tally = Tally::default();
-            let color = self.pixel_color(i, j, &mut tally).to_f64();
-            *target = self.quantize.levels(color);
-            tally.plus(Tally { primary: samples, not_finite: u64::from(!color.is_finite()), ..Tally::default() })
+            let color = self.pixel_color(i, j, &mut tally);
+            *target = levels(self.quantize, color);
+            let not_finite = u64::from(!color.to_f64().is_finite());
+            tally.plus(Tally { primary: samples, not_finite, ..Tally::default() })
         };
         Ok(pixels.par_iter().zip(colors).with_min_len(256).map(each).reduce(Tally::default, Tally::plus))
     }
+}
+
+/// The 8-bit RGB of an unclamped colour, calculated in its scalar; NaN becomes 0. Read it beside `shaders/quantize.wgsl`.
+pub(super) fn levels<T: Real>(quantize: Quantize, color: Vec3<T>) -> [u8; 3] {
+    let (scale, bias) = (T::from_f64(255.0), T::from_f64(quantize.bias()));
+    let level = |c: T| {
+        let low = if c > T::ZERO { c } else { T::ZERO };
+        let clamped = if low > T::ONE { T::ONE } else { low };
+        (scale * clamped + bias).to_f64() as u8
+    };
+    [level(color.x), level(color.y), level(color.z)]
 }
 
 /// What rendering some rows came to.
@@ -161,8 +173,9 @@ impl Tally {
 }
 
 impl<T: Real> Witness<T> for Tally {
-    fn shadow(&mut self, _world: &World<T>, _ray: &Ray<T>, _own: &Own<T>) {
+    fn blocked(&mut self, _world: &World<T>, _ray: &Ray<T>, _own: &Own<T>, is_blocked: bool) -> bool {
         self.shadow += 1;
+        is_blocked
     }
 
     fn reflected(&mut self, _throughput: T) {

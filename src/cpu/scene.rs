@@ -27,10 +27,11 @@ pub(crate) struct Shape<T> {
     pub index: u32,
 }
 
-impl<T: Real> Shape<T> {
-    /// Whether both are bit for bit the same surface.
-    pub(crate) fn is_same_surface(&self, other: &Self) -> bool {
-        (self.center, self.inv_scale, self.radius) == (other.center, other.inv_scale, other.radius)
+impl Shape<f64> {
+    /// Bits that are equal exactly where two shapes are the same surface.
+    pub(crate) fn bits(&self) -> [u64; 7] {
+        let (c, i) = (self.center + Vec3::ZERO, self.inv_scale); // + 0 turns −0 into 0
+        [c.x, c.y, c.z, i.x, i.y, i.z, self.radius].map(f64::to_bits)
     }
 }
 

@@ -49,14 +49,23 @@ pub(crate) fn specular_power<T: Real>(d: T, n: T) -> T {
     }
 }
 
-/// The unblocked light of one source: diffuse and specular terms.
+/// The unblocked light of one source.
+pub(crate) struct LightTerms<T> {
+    /// Unit vector.
+    pub to_light: Vec3<T>,
+    /// 1 − cos of the angle whose cosine the specular term is a power of.
+    pub d: T,
+    pub diffuse: T,
+    pub specular: T,
+}
+
 pub(crate) fn light_terms<T: Real>(
     surface: &Surface<T>,
     material: &Material<T>,
     to_light: Vec3<T>,
     n_dot_l: T,
     model: Specular,
-) -> (T, T) {
+) -> LightTerms<T> {
     let diffuse = material.kd * n_dot_l;
     // 1 − cos of the angle between two unit vectors is half the square of their difference.
     let (a, b) = match model {
@@ -65,7 +74,7 @@ pub(crate) fn light_terms<T: Real>(
     };
     let difference = a - b;
     let d = T::from_f64(0.5) * difference.dot(difference);
-    (diffuse, material.ks * specular_power(d, material.n))
+    LightTerms { to_light, d, diffuse, specular: material.ks * specular_power(d, material.n) }
 }
 
 /// Colour of a surface point without its reflection.
@@ -79,21 +88,19 @@ pub(crate) fn local_color<T: Real, W: Witness<T>>(world: &World<T>, surface: &Su
         let to_light = shadow_ray.direction * (T::ONE / distance_squared.sqrt());
         let n_dot_l = surface.normal.dot(to_light);
         // Not lit from behind, and not by a light at distance 0, where N·L is NaN.
-        let lit = n_dot_l > T::ZERO;
-        witness.lit(world, surface, light, n_dot_l);
-        if !lit {
+        if !witness.lit(world, surface, light, n_dot_l, n_dot_l > T::ZERO) {
             continue;
         }
         if world.shadows {
-            witness.shadow(world, &shadow_ray, &surface.own);
-            if any_hit(world, &shadow_ray, &surface.own, index) {
+            let is_blocked = any_hit(world, &shadow_ray, &surface.own, index);
+            if witness.blocked(world, &shadow_ray, &surface.own, is_blocked) {
                 continue;
             }
         }
-        let (diffuse, specular) = light_terms(surface, material, to_light, n_dot_l, world.specular);
-        color += light.intensity * material.color * diffuse;
-        color += light.intensity * specular;
-        witness.shaded(world, surface, light, specular);
+        let terms = light_terms(surface, material, to_light, n_dot_l, world.specular);
+        color += light.intensity * material.color * terms.diffuse;
+        color += light.intensity * terms.specular;
+        witness.shaded(world, surface, light, &terms);
     }
     color
 }

@@ -16,8 +16,9 @@ pub(crate) fn trace<T: Real, W: Witness<T>>(world: &World<T>, primary: &Primary<
     }
     let mut ray = primary.ray;
     let mut hit = nearest_seen(world, primary);
-    witness.nearest(world, &ray, None, &world.primary, hit.as_ref());
+    hit = witness.nearest(world, &ray, None, &world.primary, hit);
     if hit.is_none() {
+        witness.background(world);
         return world.background;
     }
     let mut color = Vec3::ZERO;
@@ -38,7 +39,7 @@ pub(crate) fn trace<T: Real, W: Witness<T>>(world: &World<T>, primary: &Primary<
         ray = reflection_ray(&surface);
         hit = nearest_secondary(world, &ray, &surface.own, &world.reflection);
         witness.reflected(throughput);
-        witness.nearest(world, &ray, Some(&surface.own), &world.reflection, hit.as_ref());
+        hit = witness.nearest(world, &ray, Some(&surface.own), &world.reflection, hit);
     }
     color
 }

@@ -39,7 +39,7 @@ pub(super) fn trace_refraction<T: Real, W: Witness<T>>(
             None => nearest_seen(world, primary),
             Some(own) => nearest_secondary(world, &ray, own, &range),
         };
-        witness.nearest(world, &ray, own.as_ref(), &range, hit.as_ref());
+        let hit = witness.nearest(world, &ray, own.as_ref(), &range, hit);
         if let Some(found) = hit {
             let surface = surface_at(world, &ray, &found);
             witness.surface(world, &ray, &found, &surface);
@@ -48,10 +48,9 @@ pub(super) fn trace_refraction<T: Real, W: Witness<T>>(
             if depth < world.max_depth {
                 let kt = world.glasses[surface.sphere].kt;
                 if kt != T::ZERO {
-                    let snell = Snell::at(world, &surface);
-                    let (ray, own) = refraction_ray(&ray, &surface, &snell);
                     let throughput = throughput.weakened(kt);
-                    witness.refracted(world, &surface, &snell, throughput);
+                    let snell = witness.refracted(world, &surface, Snell::at(world, &surface), throughput);
+                    let (ray, own) = refraction_ray(&ray, &surface, &snell);
                     pending.push(Pending { ray, own, throughput, depth: depth + 1, shows_background });
                 }
                 let kr = world.materials[surface.sphere].kr;
@@ -67,6 +66,7 @@ pub(super) fn trace_refraction<T: Real, W: Witness<T>>(
                 }
             }
         } else if shows_background {
+            witness.background(world);
             color += world.background * throughput;
         }
         let Some(next) = pending.pop() else { return color };
