@@ -25,11 +25,12 @@ use super::tables::{are_too_large, check_fits, copies_fit, copy_resources, list_
 use super::timestamps::Timestamps;
 use super::upload::empty_texels;
 use crate::accel::{Acceleration, Cover, Density, Rounding};
-use crate::brightness::{Brightness, Scalar};
+use crate::brightness::Scalar;
 use crate::camera::Camera;
 use crate::effects::{Effect, Effects};
 use crate::exact::TangentMargin;
 use crate::geometry::{ellipsoid, in_range, shape_indices};
+use crate::limits;
 use crate::misuse::check_picture;
 use crate::precision::Tier;
 use crate::scene::Scene;
@@ -230,7 +231,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         let (scene, settings) = (scene.as_ref(), &settings);
         let eye = eye * (scene.window.near / near);
         let scalar = if kernel.is_double() { Scalar::Double } else { Scalar::Single };
-        if let Some(why) = Brightness::of(scene, effects).problem(scene, scalar) {
+        if let Some(why) = limits::problem_in(scalar, scene, effects) {
             let help = "help: --precision double can, where the device has f64, and --device cpu";
             return Err(Error::NoDevice(format!("{} cannot render this scene: {why}\n  {help}", kernel.name())));
         }
