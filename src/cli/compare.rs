@@ -10,9 +10,12 @@ use super::options::{DeviceOptions, PictureOptions, device_name, open_device};
 use super::output::{errln, out, outln};
 use crate::compare::{Difference, Explanation, Limits, Verdict, heatmap, three_wide, verdict};
 use crate::cpu::{Judge, Reference};
+use crate::effects::Effects;
 use crate::engine::{Backend, Engine, render_picture};
 use crate::film::{Format, Leniency, Picture, Target, read_picture};
 use crate::gpu::Choice;
+use crate::scene::Scene;
+use crate::settings::Settings;
 
 /// Arguments of `trueray compare`.
 #[derive(Debug, clap::Args)]
@@ -175,8 +178,7 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Subje
     let settings = args.picture.settings()?;
     let effects = args.picture.renderable_effects(scene, &settings)?;
     let (name, picture, not_finite, judge) = if let Some(path) = picture {
-        // A picture of unknown origin is judged as that of the tier asked for, or else of the one that `auto` takes.
-        let judge = Judge::of(args.device.selection(None, scene, &settings, &effects).tier);
+        let judge = judge_of_unknown(&args.device, scene, &settings, &effects)?;
         (path.display().to_string(), read(path, args.lenient)?, None, judge)
     } else {
         // Comparing the reference with itself would say nothing: auto means a device here.
@@ -205,7 +207,24 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Subje
     Ok(Subject { names, pictures: [picture, expected], explanation: Some(explanation), not_finite })
 }
 
-fn picture(scene: &crate::scene::Scene, rgb: Vec<u8>) -> Result<Picture, Failure> {
+/// The judge of a picture of unknown origin: as if it came from the device that is asked for or, for auto, from the one that would render
+/// here, at the tier that is asked for or that covers the scene there.
+fn judge_of_unknown(
+    device: &DeviceOptions,
+    scene: &Scene,
+    settings: &Settings,
+    effects: &Effects,
+) -> Result<Judge, Failure> {
+    let gpu = match &device.device {
+        Choice::Cpu => return Ok(device.precision.0.map_or(Backend::Reference.judge(), Judge::of)),
+        Choice::Auto => open_device(&Choice::Auto).ok(),
+        choice => Some(open_device(choice)?),
+    };
+    let tier = device.selection(gpu.as_ref(), scene, settings, effects).tier;
+    Ok(gpu.map_or_else(|| Judge::of(tier), |gpu| Backend::Device(&gpu, tier).judge()))
+}
+
+fn picture(scene: &Scene, rgb: Vec<u8>) -> Result<Picture, Failure> {
     Picture::new(scene.width, scene.height, rgb).map_err(|error| Failure::new(USAGE, error.to_string()))
 }
 

@@ -8,7 +8,8 @@ use super::margin::{ANGLE, Crossing, LENGTH, Margins, Path, Roundoff, length};
 use super::refract::Snell;
 use super::scene::{PointLight, World};
 use super::shade::{LightTerms, Surface, specular_power};
-use super::spread::{Gamut, Extent, Spread};
+use super::spread::{Extent, Gamut, Spread};
+use super::surfaces::Surfaces;
 use super::vec3::Vec3;
 use super::witness::Witness;
 use crate::settings::Specular;
@@ -27,7 +28,7 @@ struct Answer {
 #[derive(Debug)]
 pub(super) struct Cone<'a> {
     roundoff: Roundoff,
-    surfaces: &'a [u32],
+    surfaces: &'a Surfaces,
     gamut: &'a Gamut,
     max_depth: u32,
     path: Path,
@@ -116,8 +117,8 @@ impl<'a> Cone<'a> {
         let mut found = Vec::new();
         // Nothing behind what is surely met counts.
         let mut limit = f64::INFINITY;
-        for &sphere in self.surfaces {
-            let (sphere, shape) = (sphere as usize, &world.shapes[sphere as usize]);
+        for sphere in self.surfaces.near(&margins, f64::INFINITY) {
+            let shape = &world.shapes[sphere];
             let own = own.filter(|own| own.shape == shape.index);
             if own.is_some_and(|own| !own.inside) {
                 continue;
@@ -187,8 +188,8 @@ impl<'a> Cone<'a> {
     ) -> bool {
         let margins = Margins { world, ray, path, roundoff: self.roundoff };
         let mut may_block = false;
-        for &sphere in self.surfaces {
-            let (sphere, shape) = (sphere as usize, &world.shapes[sphere as usize]);
+        for sphere in self.surfaces.near(&margins, 1.0) {
+            let shape = &world.shapes[sphere];
             let own = Some(own).filter(|own| own.shape == shape.index);
             if own.is_some_and(|own| !own.inside) {
                 continue;

@@ -3,7 +3,7 @@
 //! A renderer that rounds follows a ray within a thin cone around the exact one. At every decision that the cone does not leave
 //! sure the path forks. A value is explained where one of these paths, traced to its end, gives it.
 
-use std::collections::{HashSet, VecDeque};
+use std::collections::VecDeque;
 
 use glam::DVec3;
 
@@ -12,6 +12,7 @@ use super::decision::Decision;
 use super::margin::Roundoff;
 use super::render::Reference;
 use super::spread::{Gamut, Shade};
+use super::surfaces::Surfaces;
 use super::trace::trace;
 use crate::precision::Tier;
 
@@ -51,15 +52,7 @@ impl Judge {
     /// Judges pictures of `reference`'s scene.
     pub fn trial<'a>(&self, reference: &'a Reference<f64>) -> Trial<'a> {
         let world = &reference.world;
-        let mut seen = HashSet::new();
-        let surfaces =
-            (0..world.shapes.len() as u32).filter(|&sphere| seen.insert(world.shapes[sphere as usize].bits()));
-        Trial {
-            reference,
-            roundoff: Roundoff::of(self.tier),
-            surfaces: surfaces.collect(),
-            gamut: Gamut::of(world),
-        }
+        Trial { reference, roundoff: Roundoff::of(self.tier), surfaces: Surfaces::of(world), gamut: Gamut::of(world) }
     }
 }
 
@@ -68,8 +61,7 @@ impl Judge {
 pub struct Trial<'a> {
     pub(super) reference: &'a Reference<f64>,
     pub(super) roundoff: Roundoff,
-    /// Indices of the spheres, of equal surfaces only the lowest, which wins on every device.
-    pub(super) surfaces: Vec<u32>,
+    pub(super) surfaces: Surfaces,
     pub(super) gamut: Gamut,
 }
 

@@ -4,6 +4,8 @@
 //! adds one. Chains of operations count as many as add up in fact, and what only changes a vector's length is kept apart from
 //! what turns it.
 
+use glam::DVec3;
+
 use super::intersect::{Approach, Own, Ray, approach, exit_root};
 use super::scene::{Shape, World};
 use super::vec3::Vec3;
@@ -101,12 +103,32 @@ impl Margins<'_> {
         // The start of a ray may be off along its own surface, but lies on it but for rounding.
         let start = if self.leaves(sphere) { LOCAL * roundoff.shading * size(world, sphere) } else { path.position };
         let place = PLACE * roundoff.geometry * (length(ray.origin) + length(world.shapes[sphere].center) + along);
-        let spread = match path.end {
+        self.spread(start, t) + place
+    }
+
+    /// Whether a ray of the cone may meet anything within a ball from t = 0 to `t_max`.
+    pub(super) fn may_meet(&self, center: DVec3, radius: f64, t_max: f64) -> bool {
+        let (origin, direction) = (self.ray.origin.to_f64(), self.ray.direction.to_f64());
+        let length = direction.length();
+        let from_origin = center - origin;
+        let along = from_origin.dot(direction) / length;
+        let aside = (from_origin - direction * (along / length)).length();
+        // The width at the far end of the ball, and what rounding takes there.
+        let far = (along.abs() + radius) / length;
+        let start = self.path.position.max(LOCAL * self.roundoff.shading * radius);
+        let place = PLACE * (origin.length() + center.length() + far * length) + (PLACE + LOCAL) * radius;
+        let reach = radius + self.spread(start, far) + self.roundoff.geometry * place;
+        // NaN is near.
+        !(aside > reach || along < -reach || along > t_max * length + reach)
+    }
+
+    /// Width of a cone that starts with this one, at `t`.
+    fn spread(&self, start: f64, t: f64) -> f64 {
+        match self.path.end {
             // Both ends of the way are known.
             Some(end) => start * (1.0 - t).abs() + end * t.abs(),
-            None => start + along * path.direction,
-        };
-        spread + place
+            None => start + t.abs() * length(self.ray.direction) * self.path.direction,
+        }
     }
 
     fn leaves(&self, sphere: usize) -> bool {
@@ -239,7 +261,7 @@ fn normal_error(shape: &Shape<f64>, local: Vec3<f64>, along: f64, off: f64, roun
 }
 
 /// Greatest semi-axis of a sphere.
-fn size(world: &World<f64>, sphere: usize) -> f64 {
+pub(super) fn size(world: &World<f64>, sphere: usize) -> f64 {
     largest(world.materials[sphere].scale) * world.shapes[sphere].radius
 }
 

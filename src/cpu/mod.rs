@@ -16,6 +16,7 @@ mod scene;
 mod seen;
 mod shade;
 mod spread;
+mod surfaces;
 mod tangent;
 mod trace;
 mod trace_refraction;
