@@ -69,7 +69,7 @@ fn shade(ray: Ray, hit: Hit, is_path: bool, slot: u32, before: vec3r, throughput
     let color = select(before, before + local_color(surface, material, hit.found) * throughput, hit.found);
     let goes_on = hit.found & !is_cut & (material.kr != real(0.0)) & (has_next != 0u);
     if goes_on {
-        reflect(surface, color, min(throughput * material.kr, MAX_THROUGHPUT), slot);
+        reflect(surface, color, weakened(throughput, material.kr), slot);
     }
     if is_path {
         if !goes_on {

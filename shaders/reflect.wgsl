@@ -9,6 +9,7 @@ fn reflection_ray(surface: Surface) -> Ray {
 // Not the index of any shape: a primary ray leaves no sphere.
 const NO_SHAPE: u32 = 0xffffffffu;
 
-// Mirrors with Kr > 1 and glass with Kt > 1 amplify no further, or products would overflow; whatever is lit at all is white
-// long before.
-const MAX_THROUGHPUT: real = real(1e30);
+// The weight of a ray that `coefficient` of what has this weight follows.
+fn weakened(throughput: real, coefficient: real) -> real {
+    return max(min(throughput * coefficient, MAX_THROUGHPUT), -MAX_THROUGHPUT);
+}

@@ -39,13 +39,13 @@ fn tree_color(primary: Ray, seen: Hit) -> vec3r {
                 let kt = glasses[surface.sphere].kt;
                 if kt != real(0.0) {
                     let refracted = refraction_ray(ray, surface);
-                    let weight = min(throughput * kt, MAX_THROUGHPUT);
+                    let weight = weakened(throughput, kt);
                     waiting[count] = Waiting(refracted.ray, refracted.own, weight, depth + 1u, shows_background);
                     count++;
                 }
                 if REFLECTIONS && material.kr != real(0.0) {
                     depth += 1u;
-                    throughput = min(throughput * material.kr, MAX_THROUGHPUT);
+                    throughput = weakened(throughput, material.kr);
                     ray = reflection_ray(surface);
                     own = surface.own;
                     range = reflection_range();

@@ -17,7 +17,7 @@ fn follow(primary: Ray, seen: Hit, slot: u32) {
             color += local_color(surface, material, true) * throughput;
             hit = no_hit();
             if REFLECTIONS {
-                throughput = min(throughput * material.kr, MAX_THROUGHPUT);
+                throughput = weakened(throughput, material.kr);
                 ray = reflection_ray(surface);
                 if !is_cut & (material.kr != real(0.0)) & (depth < params.max_depth) {
                     if COUNT_RAYS {

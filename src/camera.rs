@@ -2,16 +2,21 @@
 
 use glam::DVec3;
 
+use crate::geometry::reciprocal_power_of_two;
 use crate::scene::{Scene, Window};
 use crate::settings::Settings;
 use crate::view::View;
 
-/// A primary ray counts hits beyond this τ: what lies before the image plane, or just touches it, is cut away.
+/// A primary ray counts hits beyond this τ, where 1 is the image plane: what lies before it, or just touches it, is cut away.
 pub const NEAR_T_MIN: f64 = 1.0 + 1e-6;
 
+/// Windows whose greatest coordinate lies within this range are as far away as a ray's direction is long.
+const COMMON_WINDOW: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
+
 /// Positions of all sample columns and rows on the image plane. The ray of the sample in column i and row j is
-/// τ·(`column(i)` + `row(j)`), not normalised: `x(i)` to the right, `y(j)` upwards and `near` along the view, so that τ = 1
-/// lies on the image plane.
+/// τ·(`column(i)` + `row(j)`), not normalised: `x(i)` to the right, `y(j)` upwards and `near` along the view, each times a
+/// power of two, [`Camera::stretch`], which keeps squares of directions within the range of `f32` for windows of any size. So
+/// τ·`stretch` = 1 lies on the image plane; it is 1 for usual windows.
 ///
 /// Each pixel is cut into k × k equal cells, k being [`Settings::samples`], and each cell has one sample where the
 /// convention places it: with centre sampling in the middle of the cell, at offsets (s + ½)/k from the pixel's left and
@@ -27,11 +32,14 @@ pub struct Camera {
     height: u32,
     offset: (f64, f64),
     samples: u32,
+    stretch: f64,
 }
 
 impl Camera {
     /// The camera of `scene`, whose eye is at the origin, with its axes and samples placed by `settings`.
     pub fn new(scene: &Scene, settings: &Settings) -> Self {
+        let Window { near, left, right, bottom, top } = scene.window;
+        let greatest = [left, right, bottom, top].iter().fold(near, |greatest, edge| greatest.max(edge.abs()));
         Self {
             window: scene.window,
             view: settings.view,
@@ -39,19 +47,20 @@ impl Camera {
             height: scene.height,
             offset: settings.sampling.offset(),
             samples: settings.samples,
+            stretch: if COMMON_WINDOW.contains(&greatest) { 1.0 } else { reciprocal_power_of_two(greatest) },
         }
     }
 
     /// What sample column `i` gives to the direction of its rays, in the axes of the world.
     pub fn column(&self, i: u32) -> DVec3 {
         let [right, _, _] = self.view.axes();
-        right * self.x(i)
+        right * (self.x(i) * self.stretch)
     }
 
     /// What sample row `j` gives to the direction of its rays, in the axes of the world.
     pub fn row(&self, j: u32) -> DVec3 {
         let [_, up, back] = self.view.axes();
-        up * self.y(j) - back * self.near()
+        up * (self.y(j) * self.stretch) - back * (self.near() * self.stretch)
     }
 
     /// The picture's axes in the world: to the right, upwards, and against the direction of view.
@@ -102,6 +111,16 @@ impl Camera {
     fn samples_from(&self, offset: f64) -> [f64; 2] {
         let side = f64::from(self.samples);
         [offset / side, (side - 1.0 + offset) / side]
+    }
+
+    /// How many times longer the directions of rays are than the way to the image plane: a power of two.
+    pub fn stretch(&self) -> f64 {
+        self.stretch
+    }
+
+    /// A primary ray counts hits beyond this τ: [`NEAR_T_MIN`] times the way to the image plane.
+    pub fn t_min(&self) -> f64 {
+        NEAR_T_MIN / self.stretch
     }
 
     /// Side k of the grid of samples in a pixel.

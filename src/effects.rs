@@ -9,6 +9,7 @@ use std::str::FromStr;
 use glam::DVec3;
 use serde::{Serialize, Serializer};
 
+use crate::geometry::in_range;
 use crate::scene::{Light, Scene, Sphere};
 use crate::settings::Settings;
 
@@ -218,8 +219,9 @@ pub struct Effects {
 impl Effects {
     /// What `scene` calls for under `settings`.
     pub fn of(scene: &Scene, settings: &Settings) -> Self {
-        let scene = settings.view.relative(scene);
-        let needs = Needs::new(&scene, settings);
+        // In the units of kernels no square below overflows or underflows, and what is too small for them is seen.
+        let (scene, settings) = in_range(scene, settings);
+        let needs = Needs::new(&scene, &settings);
         let (depth, reflections) = needs.reflections();
         let refraction = needs.refraction();
         let depth = if refraction.is_ok() { settings.max_depth } else { depth };

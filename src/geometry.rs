@@ -10,7 +10,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::scene::{Scene, Sphere, Window};
-use crate::settings::Settings;
+use crate::settings::{Secondary, Settings};
 
 /// An axis-aligned ellipsoid prepared for intersection.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,7 +52,7 @@ impl Ellipsoid {
 }
 
 /// The power of two k with `x`·k in [1, 2), for a positive normal `x`; subnormal scales are treated as the least normal one.
-fn reciprocal_power_of_two(x: f64) -> f64 {
+pub(crate) fn reciprocal_power_of_two(x: f64) -> f64 {
     const EXPONENT: u64 = 0x7ff << 52;
     let exponent = (x.to_bits() & EXPONENT).max(1 << 52);
     // 2^-(e - bias): bias 1023 gives the stored exponent 2046 - e; the two largest binades map to the least normal number.
@@ -78,34 +78,81 @@ pub fn range_factor(greatest: f64) -> f64 {
     if COMMON_EXTENT.contains(&greatest) { 1.0 } else { reciprocal_power_of_two(greatest) }
 }
 
-/// The scene as the kernels read it: with the eye at the origin, and in units in which squared lengths neither overflow nor
-/// underflow in `f32`, which a power of two makes of them without changing a digit, a root or a pixel. Distances in the
-/// settings follow.
+/// Lights are no farther away than this many times the extent of the spheres, 2⁵⁶: already the rays to them are parallel to
+/// less than `f64` can tell.
+const FARTHEST_LIGHT: f64 = (1_u64 << 56) as f64;
+
+/// The units in which the kernels read a scene whose eye is at the origin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Units {
+    /// A power of two by which all coordinates are multiplied.
+    pub factor: f64,
+    /// The greatest coordinate or semi-axis of a sphere, in the new units.
+    pub greatest: f64,
+    /// The greatest coordinate of a light, in the new units; beyond it lights come nearer along their direction.
+    farthest: f64,
+}
+
+impl Units {
+    /// Those in which squared lengths neither overflow nor underflow in `f32`. They go by the spheres: a light in the distance
+    /// does not make the spheres small.
+    pub fn of(scene: &Scene, secondary: Secondary) -> Self {
+        let spheres = scene.spheres.par_iter().map(|s| extent(s.center).max(extent(s.scale))).reduce(|| 0.0, f64::max);
+        let lights = scene.lights.iter().map(|light| extent(light.position)).fold(0.0, f64::max);
+        // The epsilon of shadow rays is a part of the way to the light: where a nearer light would bring it down to the size of
+        // the spheres, the light has to stay.
+        let may_move = secondary.shadow == 0.0 || secondary.shadow * FARTHEST_LIGHT > 64.0;
+        let greatest = if may_move { spheres } else { spheres.max(lights) };
+        let is_common = greatest == 0.0 || COMMON_EXTENT.contains(&greatest) && lights <= *COMMON_EXTENT.end();
+        let factor = if is_common { 1.0 } else { reciprocal_power_of_two(greatest) };
+        let farthest = if may_move && greatest > 0.0 { FARTHEST_LIGHT * (greatest * factor) } else { f64::INFINITY };
+        Self { factor, greatest: spheres * factor, farthest }
+    }
+
+    /// Where a light is in these units.
+    pub fn light(&self, position: DVec3) -> DVec3 {
+        let greatest = extent(position);
+        // Quotients, since products may leave the range.
+        if greatest <= self.farthest / self.factor {
+            return position * self.factor;
+        }
+        // Powers of two again, which leave the direction as it is to the last bit.
+        position * reciprocal_power_of_two(greatest) / reciprocal_power_of_two(self.farthest)
+    }
+
+    /// `scene` in these units.
+    pub fn applied_to<'a>(&self, scene: Cow<'a, Scene>) -> Cow<'a, Scene> {
+        if self.factor == 1.0 && scene.lights.iter().all(|light| self.light(light.position) == light.position) {
+            return scene;
+        }
+        let mut scene = scene.into_owned();
+        let Window { near, left, right, bottom, top } = scene.window;
+        let [near, left, right, bottom, top] = [near, left, right, bottom, top].map(|x| x * self.factor);
+        scene.window = Window { near, left, right, bottom, top };
+        for sphere in &mut scene.spheres {
+            sphere.center *= self.factor;
+            sphere.scale *= self.factor;
+        }
+        for light in &mut scene.lights {
+            light.position = self.light(light.position);
+        }
+        Cow::Owned(scene)
+    }
+}
+
+/// The greatest coordinate, without its sign.
+fn extent(v: DVec3) -> f64 {
+    v.abs().max_element()
+}
+
+/// The scene as the kernels read it: with the eye at the origin and in the [`Units`] of kernels, which changes neither a
+/// digit nor a root nor a pixel. Distances in the settings follow.
 pub fn in_range<'a>(scene: &'a Scene, settings: &Settings) -> (Cow<'a, Scene>, Settings) {
     let view = settings.view;
     let (scene, mut settings) = (view.relative(scene), Settings { view: view.at_origin(), ..*settings });
-    let extent = |v: DVec3| v.abs().max_element();
-    let spheres = scene.spheres.par_iter().map(|s| extent(s.center).max(extent(s.scale))).reduce(|| 0.0, f64::max);
-    let lights = scene.lights.iter().map(|light| extent(light.position));
-    let Window { near, left, right, bottom, top } = scene.window;
-    let window = [near, left.abs(), right.abs(), bottom.abs(), top.abs()];
-    let greatest = lights.chain(window).fold(spheres, f64::max);
-    let k = range_factor(greatest);
-    if k == 1.0 {
-        return (scene, settings);
-    }
-    let mut scene = scene.into_owned();
-    let [near, left, right, bottom, top] = [near, left, right, bottom, top].map(|x| x * k);
-    scene.window = Window { near, left, right, bottom, top };
-    for sphere in &mut scene.spheres {
-        sphere.center *= k;
-        sphere.scale *= k;
-    }
-    for light in &mut scene.lights {
-        light.position *= k;
-    }
-    settings.secondary.reflection *= k;
-    (Cow::Owned(scene), settings)
+    let units = Units::of(&scene, settings.secondary);
+    settings.secondary.reflection *= units.factor;
+    (units.applied_to(scene), settings)
 }
 
 /// For each sphere the lowest index of a sphere with the bit-identical surface: rays that leave one leave them all. `None` where

@@ -7,6 +7,7 @@
 
 pub mod accel;
 pub mod bench;
+pub mod brightness;
 mod cache;
 pub mod camera;
 pub mod cli;
@@ -18,6 +19,7 @@ pub mod export;
 pub mod film;
 pub mod geometry;
 pub mod gpu;
+pub mod limits;
 pub mod precision;
 mod random;
 mod report;

@@ -1,13 +1,17 @@
 //! The precision ladder: what each tier promises, what a scene demands, and which tier covers it.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::str::FromStr;
 
 use glam::DVec3;
 use serde::Serialize;
 
+use crate::brightness::{Brightness, Scalar};
 use crate::effects::{Effect, Effects};
+use crate::geometry::Units;
 use crate::scene::Scene;
+use crate::settings::Secondary;
 
 /// A kernel of the GPU path, by what it promises.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
@@ -79,6 +83,11 @@ pub struct Promise {
     pub gap: f64,
     /// Greatest specular exponent.
     pub exponent: f64,
+    /// Greatest distance of a light from a sphere, in least semi-axes of the sphere: squares of it stay within the range of the
+    /// tier's numbers.
+    pub light_distance: f64,
+    /// Greatest [`Brightness`].
+    pub brightness: f64,
 }
 
 impl Tier {
@@ -92,6 +101,8 @@ impl Tier {
                 axis_ratio: 1e4,
                 gap: 1e-5,
                 exponent: 1e6,
+                light_distance: 1e15,
+                brightness: Scalar::Single.max_brightness(),
             },
             Self::Robust => Promise {
                 distance: 1e7,
@@ -100,6 +111,8 @@ impl Tier {
                 axis_ratio: 1e4,
                 gap: 1e-6,
                 exponent: 1e6,
+                light_distance: 1e15,
+                brightness: Scalar::Single.max_brightness(),
             },
             Self::Double => Promise {
                 distance: 1e9,
@@ -108,6 +121,8 @@ impl Tier {
                 axis_ratio: 1e6,
                 gap: 1e-13,
                 exponent: 1e12,
+                light_distance: f64::INFINITY,
+                brightness: Scalar::Double.max_brightness(),
             },
         }
     }
@@ -128,6 +143,10 @@ pub struct Demand {
     pub gap: Extreme,
     /// Greatest specular exponent.
     pub exponent: Extreme,
+    /// Greatest distance of a light from a sphere, in least semi-axes of the latter.
+    pub light_distance: Extreme,
+    /// Greatest [`Brightness`], with the sphere that makes it so.
+    pub brightness: Extreme,
 }
 
 /// An extreme value and the index of the sphere that has it.
@@ -159,6 +178,9 @@ const MAX_PAIRWISE: usize = 2000;
 impl Demand {
     /// What `scene` demands where `effects` are simulated.
     pub fn of(scene: &Scene, effects: &Effects) -> Self {
+        // The brightness aside, all of it is the same in any units: in those of kernels no square leaves the range.
+        let scene = &*Units::of(scene, Secondary::EXACT).applied_to(Cow::Borrowed(scene));
+        let brightness = Brightness::of(scene, effects);
         let least = Extreme { value: 0.0, sphere: None };
         let greatest = Extreme { value: f64::INFINITY, sphere: None };
         let mut demand = Self {
@@ -168,6 +190,8 @@ impl Demand {
             axis_ratio: least,
             gap: greatest,
             exponent: least,
+            light_distance: least,
+            brightness: Extreme { value: brightness.greatest(), sphere: brightness.sphere },
         };
         // Secondary rays start on any surface.
         let secondary = effects.set.has_secondary_rays();
@@ -187,6 +211,9 @@ impl Demand {
             if secondary && scene.spheres.len() > 1 {
                 let corner = (sphere.center - low).abs().max((sphere.center - high).abs());
                 demand.secondary_distance.raise(corner.length() / short, index);
+            }
+            for light in &origins[1..] {
+                demand.light_distance.raise((*light - sphere.center).length() / short, index);
             }
             for origin in &origins {
                 let height = ((*origin - sphere.center) / scale).length() - 1.0;
@@ -238,14 +265,25 @@ impl Demand {
             .or_else(|| above("axis ratio", &self.axis_ratio, promise.axis_ratio))
             .or_else(|| below("gap to a nested surface", &self.gap, promise.gap))
             .or_else(|| above("specular exponent", &self.exponent, promise.exponent))
+            .or_else(|| above("light distance over radius", &self.light_distance, promise.light_distance))
+            .or_else(|| above("brightness", &self.brightness, promise.brightness))
     }
 
     /// The demands, a line.
     pub fn summary(&self) -> String {
-        let Self { distance, secondary_distance, nearness, axis_ratio, gap, exponent } = self;
+        let Self { distance, secondary_distance, nearness, axis_ratio, gap, exponent, light_distance, brightness } =
+            self;
         format!(
-            "distance/radius {:.3e} (eye), {:.3e} (surfaces), nearness {:.3e}, axis ratio {:.3e}, nested gap {:.3e}, exponent {}",
-            distance.value, secondary_distance.value, nearness.value, axis_ratio.value, gap.value, exponent.value
+            "distance/radius {:.3e} (eye), {:.3e} (surfaces), {:.3e} (lights), nearness {:.3e}, axis ratio {:.3e}, nested gap {:.3e}, \
+             exponent {}, brightness {:.3e}",
+            distance.value,
+            secondary_distance.value,
+            light_distance.value,
+            nearness.value,
+            axis_ratio.value,
+            gap.value,
+            exponent.value,
+            brightness.value
         )
     }
 }

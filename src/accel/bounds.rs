@@ -30,11 +30,15 @@ impl Rounding {
 /// this even where they nearly cancel, so that a hit can be compared with the ends of cells.
 const MARGIN: f64 = 1e-3;
 
-/// Rounding errors of a position in a test, relative to the greatest coordinate: some ten operations on differences of two
-/// positions, each as large as 2 √3 such coordinates. Those of rays from the eye are half as large, which leaves room for the
-/// rounding of the ray's direction: of the vectors of its column and its row, at right angles, and of their sum, together some
-/// (√2 + 1) √3 at the greatest distance.
+/// Rounding errors of a position in a test, relative to the greatest coordinate of a sphere: some ten operations on differences of
+/// two positions, each as large as 2 √3 such coordinates. Those of rays from the eye are half as large, which leaves room for
+/// the rounding of the ray's direction: of the vectors of its column and its row, at right angles, and of their sum, together
+/// some (√2 + 1) √3 at the greatest distance. What rounding takes from the place of a light turns the rays to it a little; from
+/// a point of one sphere to another that moves them by less than the rest, however far away the light is.
 const ERROR_STEPS: f64 = 32.0;
+
+/// Semi-axes of what encloses a sphere at the most, in greatest coordinates: beyond, all that a ray can meet looks flat.
+const MAX_AXIS: f64 = 1e13;
 
 /// Encloses the spheres of a scene.
 #[derive(Debug, Clone, Copy)]
@@ -43,17 +47,19 @@ pub(super) struct Enclosure<'a> {
     true_axes: bool,
     /// Error of a position in object space, times the least semi-axis.
     error: f64,
-    /// The greatest coordinate of anything in the scene.
+    /// The greatest coordinate of any point of a sphere.
     pub(super) magnitude: f64,
+    /// Likewise, or of a light.
+    reach: f64,
 }
 
 impl<'a> Enclosure<'a> {
     /// Of the spheres of `scene`, or of their bounding spheres without `true_axes`.
     pub(super) fn new(scene: &'a Scene, true_axes: bool, rounding: Rounding) -> Self {
         let extent = |v: DVec3| v.abs().max_element();
-        let spheres = scene.spheres.par_iter().map(|s| extent(s.center) + extent(s.scale)).reduce(|| 0.0, f64::max);
-        let magnitude = scene.lights.iter().map(|light| extent(light.position)).fold(spheres, f64::max);
-        Self { spheres: &scene.spheres, true_axes, error: ERROR_STEPS * rounding.tests * magnitude, magnitude }
+        let magnitude = scene.spheres.par_iter().map(|s| extent(s.center) + extent(s.scale)).reduce(|| 0.0, f64::max);
+        let reach = scene.lights.iter().map(|light| extent(light.position)).fold(magnitude, f64::max);
+        Self { spheres: &scene.spheres, true_axes, error: ERROR_STEPS * rounding.tests * magnitude, magnitude, reach }
     }
 
     /// Number of spheres.
@@ -65,7 +71,7 @@ impl<'a> Enclosure<'a> {
     pub(super) fn slack(&self) -> f64 {
         let ratio = |s: &Sphere| s.scale.abs().max_element() / s.scale.abs().min_element();
         let ratio = if self.true_axes { self.spheres.par_iter().map(ratio).reduce(|| 1.0, f64::max) } else { 1.0 };
-        self.error.max(ERROR_STEPS * Rounding::SINGLE.tests * self.magnitude) * ratio
+        self.error.max(ERROR_STEPS * Rounding::SINGLE.tests * self.reach) * ratio
     }
 
     /// The greatest semi-axis as it is.
@@ -79,7 +85,8 @@ impl<'a> Enclosure<'a> {
         let scale = scale.abs();
         let axes = if self.true_axes { scale } else { DVec3::splat(scale.max_element()) };
         // The test errs alike along all axes of object space, where the ellipsoid is a sphere.
-        Solid { center, semi_axes: axes * (1.0 + MARGIN + self.error / axes.min_element()) }
+        let semi_axes = axes * (1.0 + MARGIN + self.error / axes.min_element());
+        Solid { center, semi_axes: semi_axes.min(DVec3::splat(MAX_AXIS * self.magnitude)) }
     }
 }
 

@@ -12,6 +12,9 @@ use super::lists::{Binning, Lists};
 const MAX_ACROSS: f64 = 4096.0;
 /// What is added on each side of a sphere, in cells, for the way from a direction to its cell.
 const CELL_MARGIN: f64 = 4e-3;
+/// Rounding errors of u and v: of the place of the light, of the direction from it, of the quotient, and of the face's least u
+/// and v, two or three each.
+const LOOKUP_STEPS: f64 = 16.0;
 /// Faces reach a little beyond the edges of the cube: rounding may take a direction for one of the next face.
 const FACE_EDGE: f64 = 1.0 + 1e-4;
 
@@ -122,7 +125,7 @@ fn key(distance: f32, sphere: usize) -> Key {
 struct Rectangle(u64);
 
 impl Rectangle {
-    /// Bits of a column or row, which are at most [`MAX_ACROSS`] and a few.
+    /// Bits of a column or row, which are at most [`MAX_ACROSS`] and two.
     const BITS: u32 = 13;
 
     fn new(face: usize, corners: [u32; 4]) -> Self {
@@ -179,7 +182,7 @@ const CHUNK: usize = 4096;
 impl Around {
     /// Looks at each sphere twice: keeping its ranges until the faces are cut would take twice as much memory.
     fn new(enclosure: &Enclosure, light: DVec3, entries: u64, rounding: Rounding) -> Self {
-        let error = 8.0 * rounding.lookups;
+        let error = LOOKUP_STEPS * rounding.lookups;
         let count = enclosure.len();
         let spheres = |chunk: usize| chunk * CHUNK..count.min((chunk + 1) * CHUNK);
         let extents = |chunk: usize| {
@@ -228,18 +231,18 @@ fn cut(extents: &[Extent; 6], entries: u64, error: f64) -> ([Face; 6], usize) {
     let surface: f64 = extents.iter().map(|e| span(e, 0) * span(e, 1)).sum();
     // Cells of edge h: a range of length x meets x/h + 1 of them, so there are area/h² + border/h + count entries.
     let rest = (entries as f64 - count).max(count);
-    let cells_per_unit = (-border + (border * border + 4.0 * area * rest).sqrt()) / (2.0 * area).max(1e-300);
+    let cells_per_unit = 2.0 * rest / (border + (border * border + 4.0 * area * rest).sqrt());
     let density = cells_per_unit.min((entries as f64 / surface.max(1e-300)).sqrt());
     let mut next = 0;
     let faces = extents.map(|extent| {
         if extent.count == 0.0 {
             return Face::default();
         }
-        let longest = span(&extent, 0).max(span(&extent, 1)).max(1e-30);
+        // With what rounding their ends takes: all of them may lie closer together.
+        let longest = span(&extent, 0).max(span(&extent, 1)) + 2.0 * error;
         let per_unit = density.min(MAX_ACROSS / longest);
-        // The margin of the outermost spheres, and what rounding their ends takes.
         let margin = CELL_MARGIN / per_unit + error;
-        let low = extent.low.map(|x| f64::from((x - margin) as f32) - margin);
+        let low = extent.low.map(|x| x - margin);
         let cells = [0, 1].map(|axis| ((extent.high[axis] + margin - low[axis]) * per_unit).ceil().max(1.0) as u32);
         let face = Face { low, per_unit, cells, first: next };
         next += cells[0] * cells[1];

@@ -1,12 +1,13 @@
 //! Options that several subcommands share.
 
-use super::failure::{Failure, USAGE};
+use super::failure::{Failure, SCENE, USAGE};
 use super::output::errln;
 use clap::{Args, ValueEnum};
 use glam::DVec3;
 
 use crate::effects::{Effects, Request};
 use crate::gpu::{Choice, Error, Gpu};
+use crate::limits;
 use crate::precision::{self, Selection, Tier};
 use crate::scene::Scene;
 use crate::settings::{Quantize, Sampling, Secondary, Settings, Specular};
@@ -117,12 +118,15 @@ impl PictureOptions {
         self.res
     }
 
-    /// The same, or a refusal where so deep a tree of rays would never end.
+    /// The same, or a refusal where so deep a tree of rays would never end, or where not even `f64` renders the scene.
     pub(super) fn renderable_effects(&self, scene: &Scene, settings: &Settings) -> Result<Effects, Failure> {
         let effects = self.effects(scene, settings);
         if let Some(why) = effects.too_deep(scene) {
             let help = format!("help: --max-depth {} is the most for this scene", Effects::MAX_WAITING);
             return Err(Failure::new(USAGE, format!("{why}\n  {help}")));
+        }
+        if let Some(why) = limits::problem(scene, settings, &effects) {
+            return Err(Failure::new(SCENE, format!("the scene cannot be rendered: {why}")));
         }
         Ok(effects)
     }

@@ -158,6 +158,7 @@ impl Real for Dd {
     const ZERO: Self = Self { hi: 0.0, lo: 0.0 };
     const ONE: Self = Self { hi: 1.0, lo: 0.0 };
     const FAR: Self = Self { hi: 3e38, lo: 0.0 };
+    const MAX_THROUGHPUT: Self = Self { hi: 1e280, lo: 0.0 };
     const ROUNDING: Rounding = Rounding::DOUBLE;
 
     #[inline]

@@ -27,6 +27,10 @@ pub trait Real:
     /// A number beyond every accepted distance; greater ones and infinity are never a hit.
     const FAR: Self;
 
+    /// Mirrors and glass with a coefficient beyond 1 or -1 amplify no further than this or its negative, or products would
+    /// overflow; where nothing is negative, whatever is lit at all is white long before.
+    const MAX_THROUGHPUT: Self;
+
     /// How the type rounds.
     const ROUNDING: Rounding;
 
@@ -42,14 +46,27 @@ pub trait Real:
     fn log1p(self) -> Self;
     /// Whether this is neither infinite nor NaN.
     fn is_finite(self) -> bool;
+
+    /// The weight of a ray that `coefficient` of what has this weight follows.
+    fn weakened(self, coefficient: Self) -> Self {
+        let product = self * coefficient;
+        if product > Self::MAX_THROUGHPUT {
+            Self::MAX_THROUGHPUT
+        } else if product < -Self::MAX_THROUGHPUT {
+            -Self::MAX_THROUGHPUT
+        } else {
+            product
+        }
+    }
 }
 
 macro_rules! impl_real {
-    ($t:ty, $rounding:expr) => {
+    ($t:ty, $max_throughput:expr, $rounding:expr) => {
         impl Real for $t {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
             const FAR: Self = 3e38;
+            const MAX_THROUGHPUT: Self = $max_throughput;
             const ROUNDING: Rounding = $rounding;
 
             fn from_f64(x: f64) -> Self {
@@ -74,5 +91,5 @@ macro_rules! impl_real {
     };
 }
 
-impl_real!(f32, Rounding::SINGLE);
-impl_real!(f64, Rounding::DOUBLE);
+impl_real!(f32, 1e25, Rounding::SINGLE);
+impl_real!(f64, 1e280, Rounding::DOUBLE);

@@ -4,7 +4,7 @@ use super::intersect::Range;
 use super::real::Real;
 use super::vec3::Vec3;
 use crate::accel::{Acceleration, Rounding};
-use crate::camera::{Camera, NEAR_T_MIN};
+use crate::camera::Camera;
 use crate::effects::{Effect, EffectSet, Effects};
 use crate::geometry::{Ellipsoid, ellipsoids, shape_indices};
 use crate::scene::{Light, Scene, Sphere};
@@ -115,7 +115,7 @@ impl<T: Real> World<T> {
             lights: scene.lights.iter().map(PointLight::new).collect(),
             ambient: Vec3::from_f64(scene.ambient),
             background: Vec3::from_f64(scene.background),
-            primary: if on(Effect::Shells) { range(NEAR_T_MIN, true) } else { range(0.0, false) },
+            primary: if on(Effect::Shells) { range(camera.t_min(), true) } else { range(0.0, false) },
             shadow_t_min: T::from_f64(settings.secondary.shadow),
             reflection: range(settings.secondary.reflection, true),
             refraction: range(0.0, true),

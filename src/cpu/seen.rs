@@ -5,8 +5,8 @@ use glam::DVec3;
 use super::intersect::{Range, Ray, accepted_root};
 use super::scene::Shape;
 use super::vec3::Vec3;
-use crate::camera::{Camera, NEAR_T_MIN};
-use crate::geometry::Ellipsoid;
+use crate::camera::Camera;
+use crate::geometry::{Ellipsoid, in_range};
 use crate::scene::Scene;
 use crate::settings::Settings;
 
@@ -26,21 +26,24 @@ pub struct Seen {
 /// What pixel (column `x`, row `y`) shows: that of its samples which is next to the middle. Tries every sphere once, which is
 /// less work for a single ray than any list.
 pub fn seen_through(scene: &Scene, settings: &Settings, x: u32, y: u32) -> Option<Seen> {
-    let camera = Camera::new(scene, settings);
+    let (world, settings_in_range) = in_range(scene, settings);
+    let camera = Camera::new(&world, &settings_in_range);
     let middle = settings.samples / 2;
     let direction = camera.column(x * settings.samples + middle) + camera.row(y * settings.samples + middle);
     let ray = Ray::<f64> { origin: Vec3::ZERO, direction: Vec3::from_f64(direction) };
-    let eye = settings.view.eye;
-    let mut range = Range { t_min: NEAR_T_MIN, t_max: f64::INFINITY, greater: true };
+    let mut range = Range { t_min: camera.t_min(), t_max: f64::INFINITY, greater: true };
     let mut nearest = None;
-    for (sphere, ellipsoid) in scene.spheres.iter().enumerate() {
-        let Ellipsoid { center, inv_scale, radius, .. } = Ellipsoid::with_axes(ellipsoid.center - eye, ellipsoid.scale);
+    for (sphere, ellipsoid) in world.spheres.iter().enumerate() {
+        let Ellipsoid { center, inv_scale, radius, .. } = Ellipsoid::new(ellipsoid);
         let (center, inv_scale) = (Vec3::from_f64(center), Vec3::from_f64(inv_scale));
         let shape = Shape { center, inv_scale, radius, index: sphere as u32 };
         if let Some((t, inside)) = accepted_root(&ray, &shape, None, &range) {
             range.t_max = t;
-            nearest = Some(Seen { sphere, t, position: eye + direction * t, inside });
+            nearest = Some((sphere, inside));
         }
     }
-    nearest
+    let (sphere, inside) = nearest?;
+    // Back from the units of kernels: the two windows differ by their factor.
+    let from_eye = direction * range.t_max * (scene.window.near / world.window.near);
+    Some(Seen { sphere, t: range.t_max * camera.stretch(), position: settings.view.eye + from_eye, inside })
 }

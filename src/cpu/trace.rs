@@ -9,9 +9,6 @@ use super::trace_refraction::trace_refraction;
 use super::vec3::Vec3;
 use super::witness::Witness;
 
-/// Mirrors with Kr > 1 and glass with Kt > 1 amplify no further, or products would overflow; whatever is lit at all is white long before.
-pub(super) const MAX_THROUGHPUT: f64 = 1e30;
-
 /// The unclamped colour seen along `primary`, which can meet no other spheres than those `seen`.
 pub(crate) fn trace<T: Real, W: Witness<T>>(
     world: &World<T>,
@@ -42,10 +39,7 @@ pub(crate) fn trace<T: Real, W: Witness<T>>(
             break;
         }
         depth += 1;
-        throughput *= kr;
-        if throughput > T::from_f64(MAX_THROUGHPUT) {
-            throughput = T::from_f64(MAX_THROUGHPUT);
-        }
+        throughput = throughput.weakened(kr);
         ray = reflection_ray(&surface);
         hit = nearest_secondary(world, &ray, &surface.own, &world.reflection);
         witness.reflected(throughput);

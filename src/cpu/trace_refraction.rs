@@ -6,7 +6,7 @@ use super::real::Real;
 use super::refract::{Snell, refraction_ray};
 use super::scene::World;
 use super::shade::{local_color, surface_at};
-use super::trace::{MAX_THROUGHPUT, reflection_ray};
+use super::trace::reflection_ray;
 use super::vec3::Vec3;
 use super::witness::Witness;
 
@@ -51,14 +51,14 @@ pub(super) fn trace_refraction<T: Real, W: Witness<T>>(
                 if kt != T::ZERO {
                     let snell = Snell::at(world, &surface);
                     let (ray, own) = refraction_ray(&ray, &surface, &snell);
-                    let throughput = weight(throughput, kt);
+                    let throughput = throughput.weakened(kt);
                     witness.refracted(world, &surface, &snell, throughput);
                     pending.push(Pending { ray, own, throughput, depth: depth + 1, shows_background });
                 }
                 let kr = world.materials[surface.sphere].kr;
                 if kr != T::ZERO {
                     depth += 1;
-                    throughput = weight(throughput, kr);
+                    throughput = throughput.weakened(kr);
                     ray = reflection_ray(&surface);
                     own = Some(surface.own);
                     range = world.reflection;
@@ -75,10 +75,4 @@ pub(super) fn trace_refraction<T: Real, W: Witness<T>>(
         (throughput, depth, shows_background) = (next.throughput, next.depth, next.shows_background);
         witness.resumed();
     }
-}
-
-/// The weight of a ray that `coefficient` of what has this weight follows.
-fn weight<T: Real>(throughput: T, coefficient: T) -> T {
-    let product = throughput * coefficient;
-    if product > T::from_f64(MAX_THROUGHPUT) { T::from_f64(MAX_THROUGHPUT) } else { product }
 }

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use super::layout::{Layout, ListValues, ParamValues, ShapeValues, double, single};
 use super::shader::Kernel;
 use crate::accel::{Acceleration, Lists};
-use crate::camera::{Camera, NEAR_T_MIN};
+use crate::camera::Camera;
 use crate::effects::{Effect, EffectSet, Effects};
 use crate::geometry::{Ellipsoid, ellipsoid};
 use crate::scene::{Light, Scene};
@@ -184,7 +184,7 @@ fn pack<'a, L: Layout + 'a>(
     let params = ParamValues {
         background: scene.background,
         ambient: scene.ambient,
-        primary_t_min: if on(Effect::Shells) { NEAR_T_MIN } else { 0.0 },
+        primary_t_min: if on(Effect::Shells) { camera.t_min() } else { 0.0 },
         shadow_t_min: settings.secondary.shadow,
         reflection_t_min: settings.secondary.reflection,
         quantize_bias: settings.quantize.bias(),

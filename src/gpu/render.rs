@@ -21,6 +21,7 @@ use super::tables::{are_too_large, check_fits, copies_fit, copy_resources, list_
 use super::timestamps::Timestamps;
 use super::upload::empty_texels;
 use crate::accel::{Acceleration, Cover, Density, Rounding};
+use crate::brightness::{Brightness, Scalar};
 use crate::camera::Camera;
 use crate::effects::{Effect, Effects};
 use crate::geometry::{in_range, shape_indices};
@@ -146,6 +147,10 @@ impl<'a> GpuRenderer<'a> {
     ) -> Result<Self, Error> {
         let (scene, settings) = in_range(scene, settings);
         let (scene, settings) = (scene.as_ref(), &settings);
+        let scalar = if kernel.is_double() { Scalar::Double } else { Scalar::Single };
+        if let Some(why) = Brightness::of(scene, effects).problem(scene, scalar) {
+            return Err(Error::NoDevice(format!("{}: {why}", kernel.name())));
+        }
         let tuning = &gpu.tuned.tuning;
         let specialisation = Specialisation::new(scene, settings, effects, kernel, tuning, gpu.textures());
         let camera = Camera::new(scene, settings);

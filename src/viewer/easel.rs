@@ -20,6 +20,7 @@ use crate::engine::{Backend, Engine, Times};
 use crate::film::encode_png;
 use crate::gpu;
 use crate::gpu::Gpu;
+use crate::limits;
 use crate::precision::{Selection, Tier};
 use crate::scene::{Names, Scene};
 use crate::settings::Settings;
@@ -280,7 +281,7 @@ impl<'g> Easel<'g> {
         let size = fitted(wishes.size(setting.scene), setting.pixels);
         let mut part = largest(setting.scene, &settings, PREVIEW_SPHERES);
         let effects = Effects::requested(&part, &settings, &wishes.effects);
-        if effects.too_deep(&part).is_some() {
+        if effects.too_deep(&part).or_else(|| limits::problem(&part, &settings, &effects)).is_some() {
             // The whole scene says why.
             self.preview = Some((version, Instant::now()));
             return Ok(());
@@ -344,7 +345,7 @@ impl<'g> Easel<'g> {
             step = if worth_it { (step / 4).max(1) } else { 1 };
         }
         to_come.extend(coarse.into_iter().rev());
-        let trouble = effects.too_deep(setting.scene);
+        let trouble = effects.too_deep(setting.scene).or_else(|| limits::problem(setting.scene, &settings, &effects));
         if trouble.is_some() {
             // The last picture stays.
             to_come.clear();

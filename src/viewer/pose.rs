@@ -6,8 +6,8 @@ use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::view::{View, ViewError};
 
-/// Coordinates that a page can reach, in world units.
-const FARTHEST: f64 = 1e15;
+/// Coordinates that a page can reach, in world units: their squares are within the range of `f64`.
+const FARTHEST: f64 = 1e100;
 /// Least angle between the view and the upward direction while turning, in radians.
 const LEAST_ANGLE: f64 = 0.02;
 
@@ -36,7 +36,9 @@ impl Range {
         let (low, high) = depths.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), z| (l.min(z), h.max(z)));
         let middle = low.max(0.0).midpoint(high);
         let near = scene.window.near;
-        Self { distance: if middle.is_finite() { middle.clamp(2.0 * near, FARTHEST) } else { 2.0 * near } }
+        // Both ends may lie beyond reach.
+        let distance = if middle.is_finite() { middle.max(2.0 * near) } else { 2.0 * near };
+        Self { distance: distance.min(FARTHEST) }
     }
 }
 

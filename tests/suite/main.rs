@@ -17,6 +17,7 @@ mod export;
 mod film;
 mod keys;
 mod lists;
+mod magnitudes;
 mod oracle;
 mod parse;
 mod pictures;

@@ -1,0 +1,128 @@
+//! How great the numbers become that make up a colour: beyond the range of the scalar that adds them up they would be infinite.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::effects::{Effect, Effects};
+use crate::scene::{Scene, Sphere};
+
+/// The greatest colour that a path can gather, as a product of which no factor is taken as less than 1: no partial product is
+/// greater, and what underflow takes from one is invisible.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Brightness {
+    /// Of one surface.
+    local: f64,
+    /// What all bounces together multiply it by at the most.
+    gain: f64,
+    /// Whether a factor is negative: then what is too bright for the picture may be taken away again.
+    has_negative: bool,
+    /// The sphere that makes it so; none where it is AMBIENT or BACK.
+    pub sphere: Option<usize>,
+}
+
+/// A scalar that adds up colours.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scalar {
+    /// `f32`.
+    Single,
+    /// `f64`.
+    Double,
+}
+
+impl Scalar {
+    /// The greatest weight of a ray: `MAX_THROUGHPUT` of kernels and reference.
+    fn max_throughput(self) -> f64 {
+        match self {
+            Self::Single => 1e25,
+            Self::Double => 1e280,
+        }
+    }
+
+    /// The greatest brightness that leaves room for the sum over a path, over a pixel's samples, and for 255.
+    pub fn max_brightness(self) -> f64 {
+        match self {
+            Self::Single => 1e33,
+            Self::Double => 1e300,
+        }
+    }
+}
+
+/// What a sphere, or several, add: each with the sphere that adds it.
+#[derive(Clone, Copy)]
+struct Parts {
+    local: (f64, Option<usize>),
+    gain: (f64, Option<usize>),
+    has_negative: bool,
+}
+
+impl Parts {
+    fn greater(self, later: Self) -> Self {
+        Self {
+            local: later_if_greater(self.local, later.local),
+            gain: later_if_greater(self.gain, later.gain),
+            has_negative: self.has_negative || later.has_negative,
+        }
+    }
+}
+
+fn later_if_greater(first: (f64, Option<usize>), later: (f64, Option<usize>)) -> (f64, Option<usize>) {
+    if later.0 > first.0 { later } else { first }
+}
+
+impl Brightness {
+    /// Of `scene` where `effects` are simulated.
+    pub fn of(scene: &Scene, effects: &Effects) -> Self {
+        let [reflects, refracts] = [Effect::Reflections, Effect::Refraction].map(|effect| effects.set.has(effect));
+        let greatest = |v: DVec3| v.abs().max_element().max(1.0);
+        let at_least_1 = |x: f64| x.abs().max(1.0);
+        let lights: f64 = scene.lights.iter().map(|light| greatest(light.intensity)).sum();
+        let (ambient, back) = (greatest(scene.ambient), greatest(scene.background));
+        let part = |(index, sphere): (usize, &Sphere)| {
+            let shown = ambient * at_least_1(sphere.ka) + lights * (at_least_1(sphere.kd) + at_least_1(sphere.ks));
+            let bounces = [(reflects, sphere.kr), (refracts, sphere.kt)];
+            let gain: f64 = bounces.iter().map(|&(on, k)| if on { k.abs() } else { 0.0 }).sum();
+            let coefficients = [sphere.ka, sphere.kd, sphere.ks, sphere.kr, sphere.kt];
+            let has_negative = coefficients.iter().any(|&k| k < 0.0) || sphere.color.min_element() < 0.0;
+            Parts { local: (greatest(sphere.color) * shown, Some(index)), gain: (gain, Some(index)), has_negative }
+        };
+        let light_colors = scene.lights.iter().map(|light| light.intensity);
+        let mut colors = light_colors.chain([scene.ambient, scene.background]);
+        let none = || Parts { local: (1.0, None), gain: (1.0, None), has_negative: false };
+        let Parts { local, gain, has_negative } =
+            scene.spheres.par_iter().enumerate().map(part).reduce(none, Parts::greater);
+        let (local, local_sphere) = later_if_greater((ambient.max(back), None), local);
+        let bounces = gain.0.powf(f64::from(effects.depth));
+        Self {
+            local,
+            gain: bounces,
+            has_negative: has_negative || colors.any(|color| color.min_element() < 0.0),
+            sphere: if bounces > local { gain.1 } else { local_sphere },
+        }
+    }
+
+    /// The greatest colour.
+    pub fn greatest(&self) -> f64 {
+        self.local * self.gain
+    }
+
+    /// Whether colours become infinite in `scalar`, or wrong where the weight of a ray is limited.
+    pub fn overflows(&self, scalar: Scalar) -> bool {
+        let gain = if self.has_negative { self.gain } else { self.gain.min(scalar.max_throughput()) };
+        self.local * gain > scalar.max_brightness()
+    }
+
+    /// Why `scene`, which this is the brightness of, cannot be rendered in `scalar`; `None` where it can.
+    pub fn problem(&self, scene: &Scene, scalar: Scalar) -> Option<String> {
+        self.overflows(scalar).then(|| {
+            let source = match self.sphere {
+                Some(sphere) => format!("the numbers of sphere '{}'", scene.sphere_names.get(sphere)),
+                None => "the numbers of AMBIENT or BACK".into(),
+            };
+            let (name, limit) = match scalar {
+                Scalar::Single => ("f32", scalar.max_brightness()),
+                Scalar::Double => ("f64", scalar.max_brightness()),
+            };
+            format!("{source} make colours of up to {:.0e}, beyond what {name} adds up, {limit:.0e}", self.greatest())
+        })
+    }
+}
