@@ -1,15 +1,23 @@
 // All pixels of tiles.
 
-// Tiles that a sphere may cover, column and row in 16 bits each. The length is a quarter of MAX_DISPATCH_TILES of
-// src/gpu/render.rs.
-@group(0) @binding(6) var<uniform> tiles: array<vec4<u32>, 4096>;
+struct Tiles {
+    // Bits of a tile's column in its word; those above them are its row, counted from this one.
+    column_bits: u32,
+    first_row: u32,
+    // Tiles that a sphere may cover. The length is a quarter of MAX_DISPATCH_TILES of src/gpu/render.rs.
+    @align(16) words: array<vec4<u32>, 4095>,
+}
+
+@group(0) @binding(6) var<uniform> tiles: Tiles;
 
 // One workgroup casts the primary rays of one tile, row by row, and shades what they hit.
 @compute @workgroup_size(64)
 fn see_tiles(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) index: u32) {
     params = given_params;
     load_lights();
-    let tile = tiles[group.x / 4u][group.x % 4u];
-    let pixel = vec2(tile & 0xffffu, tile >> 16u) * 8u + vec2(index % 8u, index / 8u);
+    let word = tiles.words[group.x / 4u][group.x % 4u];
+    let row = word >> tiles.column_bits;
+    let tile = vec2(word - (row << tiles.column_bits), tiles.first_row + row);
+    let pixel = tile * 8u + vec2(index % 8u, index / 8u);
     see_pixel(pixel, (group.x * 64u + index) * SAMPLES * SAMPLES);
 }

@@ -38,16 +38,20 @@ pub struct Camera {
 impl Camera {
     /// The camera of `scene`, whose eye is at the origin, with its axes and samples placed by `settings`.
     pub fn new(scene: &Scene, settings: &Settings) -> Self {
-        let Window { near, left, right, bottom, top } = scene.window;
-        let greatest = [left, right, bottom, top].iter().fold(near, |greatest, edge| greatest.max(edge.abs()));
-        Self {
+        let camera = Self {
             window: scene.window,
             view: settings.view,
             width: scene.width,
             height: scene.height,
             offset: settings.sampling.offset(),
             samples: settings.samples,
-            stretch: if COMMON_WINDOW.contains(&greatest) { 1.0 } else { reciprocal_power_of_two(greatest) },
+            stretch: 1.0,
+        };
+        let greatest = camera.greatest();
+        if COMMON_WINDOW.contains(&greatest) {
+            camera
+        } else {
+            Self { stretch: reciprocal_power_of_two(greatest), ..camera }
         }
     }
 
@@ -126,6 +130,12 @@ impl Camera {
     /// Side k of the grid of samples in a pixel.
     pub fn samples(&self) -> u32 {
         self.samples
+    }
+
+    /// The greatest coordinate of a point on the window.
+    pub fn greatest(&self) -> f64 {
+        let Window { near, left, right, bottom, top } = self.window;
+        [left, right, bottom, top].iter().fold(near, |greatest, edge| greatest.max(edge.abs()))
     }
 
     /// Distance of the image plane.

@@ -9,11 +9,13 @@ use serde::Serialize;
 use crate::cpu::{Judge, Reference, Tally};
 use crate::effects::Effects;
 use crate::gpu::{self, Gpu, GpuRenderer};
+use crate::misuse::{Misuse, check_picture};
 use crate::precision::Tier;
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::tiles::TILE;
 
+pub use crate::gpu::{Options, Output, Pixels, Rows};
 pub use partial::{Filler, PartialPicture, render_partial};
 
 /// Bytes of one band of rows at the most, unless a single row of tiles takes more.
@@ -39,7 +41,7 @@ pub struct Times {
 /// How many rays a picture took.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct Rays {
-    /// Rays from the eye; pixels that no sphere can cover need none on the GPU.
+    /// Rays from the eye: one for each sample of each pixel, also where no sphere can be and a device needs none.
     pub primary: u64,
     /// Rays towards lights.
     pub shadow: u64,
@@ -68,13 +70,13 @@ impl Backend<'_> {
     }
 }
 
-/// A renderer with a scene.
+/// A renderer with a scene: of [`Rows`] of its picture, or of lists of its [`Pixels`].
 #[derive(Debug)]
-pub enum Engine<'a> {
+pub enum Engine<'a, O = Rows> {
     /// The CPU reference.
     Cpu(Box<CpuEngine>),
     /// A Vulkan device.
-    Gpu(Box<GpuRenderer<'a>>, Duration),
+    Gpu(Box<GpuRenderer<'a, O>>, Duration),
 }
 
 /// The CPU reference with its clock.
@@ -86,17 +88,54 @@ pub struct CpuEngine {
     tally: Tally,
 }
 
+impl CpuEngine {
+    /// Notes what an action took and came to; returns how many pixels are not finite.
+    fn timed(&mut self, action: impl FnOnce(&Reference<f64>) -> Result<Tally, Misuse>) -> Result<u64, Misuse> {
+        let start = Instant::now();
+        let tally = action(&self.reference)?;
+        self.render += start.elapsed();
+        self.tally = self.tally.plus(tally);
+        Ok(tally.not_finite)
+    }
+}
+
 impl<'a> Engine<'a> {
-    /// Prepares `scene` for `backend`.
+    /// Prepares rows of `scene` for `backend`.
     pub fn new(
         backend: Backend<'a>,
         scene: &Scene,
         settings: &Settings,
         effects: &Effects,
     ) -> Result<Self, gpu::Error> {
+        Self::with(backend, scene, settings, effects, &Options::default())
+    }
+
+    /// Renders whole rows from row `first` on; returns how many pixels are not finite.
+    ///
+    /// # Errors
+    ///
+    /// [`gpu::Error::Misuse`] where these are no rows of the picture.
+    pub fn rows(&mut self, first: u32, rgb: &mut [u8]) -> Result<u64, gpu::Error> {
+        match self {
+            Self::Cpu(cpu) => Ok(cpu.timed(|reference| reference.rows(first, rgb))?),
+            Self::Gpu(gpu, _) => Ok(gpu.rows(first, rgb)?.not_finite),
+        }
+    }
+}
+
+impl<'a, O: Output> Engine<'a, O> {
+    /// Prepares `scene` for `backend`, with more than the pixels where that is wanted.
+    pub fn with(
+        backend: Backend<'a>,
+        scene: &Scene,
+        settings: &Settings,
+        effects: &Effects,
+        options: &Options,
+    ) -> Result<Self, gpu::Error> {
         let start = Instant::now();
         Ok(match backend {
             Backend::Reference => {
+                check_picture(scene, settings)?;
                 let reference = Reference::new(scene, settings, effects);
                 Self::Cpu(Box::new(CpuEngine {
                     reference,
@@ -106,45 +145,24 @@ impl<'a> Engine<'a> {
                 }))
             }
             Backend::Device(gpu, tier) => {
-                Self::Gpu(Box::new(GpuRenderer::new(gpu, scene, settings, effects, tier)?), start.elapsed())
+                Self::Gpu(Box::new(GpuRenderer::with(gpu, scene, settings, effects, tier, options)?), start.elapsed())
             }
         })
     }
 
-    /// Counts rays, which the GPU does only when asked; before the first row.
-    pub fn count_rays(&mut self) {
-        if let Self::Gpu(gpu, _) = self {
-            gpu.count_rays();
+    /// Width and height of the picture.
+    pub fn size(&self) -> (u32, u32) {
+        match self {
+            Self::Cpu(cpu) => cpu.reference.size(),
+            Self::Gpu(gpu, _) => gpu.size(),
         }
     }
 
-    /// Reads the device's own clock from now on; returns whether there is one.
-    pub fn time_on_device(&mut self) -> bool {
+    /// Time of all dispatches by the device's own clock, in ms; `None` where it is not read or there is none.
+    pub fn on_device_ms(&self) -> Option<f64> {
         match self {
-            Self::Cpu(_) => false,
-            Self::Gpu(gpu, _) => gpu.time_on_device(),
-        }
-    }
-
-    /// Time of all dispatches by the device's own clock, in ms; 0 where it is not asked or has none.
-    pub fn on_device_ms(&self) -> f64 {
-        match self {
-            Self::Cpu(_) => 0.0,
-            Self::Gpu(gpu, _) => ms(gpu.times().on_device),
-        }
-    }
-
-    /// Renders whole rows from row `first` on (a multiple of [`TILE`]); returns how many pixels are not finite.
-    pub fn rows(&mut self, first: u32, rgb: &mut [u8]) -> Result<u64, gpu::Error> {
-        match self {
-            Self::Cpu(cpu) => {
-                let start = Instant::now();
-                let tally = cpu.reference.rows(first, rgb);
-                cpu.render += start.elapsed();
-                cpu.tally = cpu.tally.plus(tally);
-                Ok(tally.not_finite)
-            }
-            Self::Gpu(gpu, _) => gpu.rows(first, rgb),
+            Self::Cpu(_) => None,
+            Self::Gpu(gpu, _) => gpu.has_clock().then(|| ms(gpu.times().on_device)),
         }
     }
 
@@ -166,7 +184,7 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// Rays so far; `None` where they were not counted.
+    /// Rays so far; `None` where they are not counted. The CPU reference always counts them.
     pub fn rays(&self) -> Option<Rays> {
         match self {
             Self::Cpu(cpu) => {
@@ -187,12 +205,12 @@ pub struct Band<'a> {
     pub rgb: &'a [u8],
 }
 
-/// Renders a picture of `width` × `height` band by band; returns how many pixels are not finite.
+/// Renders a picture band by band; returns how many pixels are not finite.
 pub fn render_bands<E: From<gpu::Error>>(
     engine: &mut Engine,
-    (width, height): (u32, u32),
     mut sink: impl FnMut(Band) -> Result<(), E>,
 ) -> Result<u64, E> {
+    let (width, height) = engine.size();
     let row_bytes = width as usize * 3;
     let tile_rows = (BAND_BYTES / (row_bytes * TILE as usize)).max(1);
     let band_rows = (tile_rows as u64 * u64::from(TILE)).min(u64::from(height)) as u32;
@@ -206,10 +224,11 @@ pub fn render_bands<E: From<gpu::Error>>(
     Ok(not_finite)
 }
 
-/// Renders a whole picture into memory.
-pub fn render_picture(engine: &mut Engine, scene: &Scene) -> Result<(Vec<u8>, u64), gpu::Error> {
-    let mut picture = Vec::with_capacity(scene.width as usize * scene.height as usize * 3);
-    let not_finite = render_bands(engine, (scene.width, scene.height), |band| {
+/// Renders a whole picture into memory; returns it with the number of its pixels that are not finite.
+pub fn render_picture(engine: &mut Engine) -> Result<(Vec<u8>, u64), gpu::Error> {
+    let (width, height) = engine.size();
+    let mut picture = Vec::with_capacity(width as usize * height as usize * 3);
+    let not_finite = render_bands(engine, |band| {
         picture.extend_from_slice(band.rgb);
         Ok::<_, gpu::Error>(())
     })?;

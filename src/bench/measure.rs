@@ -8,7 +8,7 @@ use super::families::{Axis, Family};
 use super::fit::growth_exponent;
 use super::stages::{STAGES, Stage};
 use crate::effects::Effects;
-use crate::engine::{Backend, Engine, Rays};
+use crate::engine::{Backend, Engine, Options, Rays};
 use crate::gpu::{self, DeviceInfo, Gpu};
 use crate::precision::{Selection, Tier};
 use crate::report::Sample;
@@ -232,10 +232,8 @@ impl Contestant<'_> {
     /// Renders the picture from the scene on; returns its time in ms without compiling, and the engine with the stages.
     fn run(&mut self, scene: &Scene, subject: &Subject, effects: &Effects, count: bool) -> Result<f64, gpu::Error> {
         let start = Instant::now();
-        let mut engine = Engine::new(self.backend, scene, subject.settings, effects)?;
-        if count {
-            engine.count_rays();
-        }
+        let options = Options { count_rays: count, ..Options::default() };
+        let mut engine: Engine = Engine::with(self.backend, scene, subject.settings, effects, &options)?;
         engine.rows(0, &mut self.rgb)?;
         let wall_ms = start.elapsed().as_secs_f64() * 1e3;
         let times = engine.times();

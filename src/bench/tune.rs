@@ -104,7 +104,7 @@ pub fn tune(gpu: &mut Gpu, plan: &TunePlan, mut on_knob: impl FnMut(&KnobResult)
         on_knob(&result);
         knobs.push(result);
     }
-    gpu.set_tuning(best);
+    gpu.set_tuning(best)?;
     Ok(TuneResult { device: gpu.info.clone(), knobs, before, after: best })
 }
 
@@ -143,7 +143,7 @@ fn tune_knob(gpu: &mut Gpu, plan: &TunePlan, knob: &Knob, best: &Tuning) -> Resu
                 let trial = &mut trials[trial];
                 let mut tuning = *best;
                 (knob.set)(&mut tuning, trial.value);
-                gpu.set_tuning(tuning);
+                gpu.set_tuning(tuning)?;
                 let ms = subject.render(gpu, plan.settings, &tuning)?;
                 // The first is a warm-up.
                 if run > 0 {
@@ -168,7 +168,7 @@ fn tune_knob(gpu: &mut Gpu, plan: &TunePlan, knob: &Knob, best: &Tuning) -> Resu
 
 /// Whether the device can do with such a value.
 fn fits(gpu: &Gpu, knob: &Knob, value: f64) -> bool {
-    let mut tuning = gpu.tuned.tuning;
+    let mut tuning = gpu.tuned().tuning;
     (knob.set)(&mut tuning, value);
     gpu.info.problem_with(&tuning).is_none()
 }
@@ -177,7 +177,7 @@ impl Subject {
     /// Renders once and returns the time, in ms. Another picture than before is an error: no tuning may change one.
     fn render(&mut self, gpu: &Gpu, settings: &Settings, tuning: &Tuning) -> Result<f64, Error> {
         let mut engine = Engine::new(Backend::Device(gpu, self.tier), &self.scene, settings, &self.effects)?;
-        let (rgb, _) = render_picture(&mut engine, &self.scene)?;
+        let (rgb, _) = render_picture(&mut engine)?;
         let times = engine.times();
         match &self.picture {
             None => self.picture = Some(rgb),

@@ -189,11 +189,11 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Subje
         let tier = args.device.selection(Some(&gpu), scene, &settings, &effects).tier;
         let backend = Backend::Device(&gpu, tier);
         let mut engine = Engine::new(backend, scene, &settings, &effects)?;
-        let (rgb, not_finite) = render_picture(&mut engine, scene)?;
+        let (rgb, not_finite) = render_picture(&mut engine)?;
         let name = format!("{}, {tier}", device_name(Some(&gpu)));
         (name, self::picture(scene, rgb)?, Some(not_finite), backend.judge())
     };
-    let (rgb, _) = render_picture(&mut Engine::new(Backend::Reference, scene, &settings, &effects)?, scene)?;
+    let (rgb, _) = render_picture(&mut Engine::new(Backend::Reference, scene, &settings, &effects)?)?;
     let expected = self::picture(scene, rgb)?;
     if (picture.width(), picture.height()) != (expected.width(), expected.height()) {
         let (width, height) = (picture.width(), picture.height());

@@ -5,6 +5,7 @@ use std::fmt;
 
 use crate::film::OutputError;
 use crate::gpu;
+use crate::misuse::Misuse;
 
 /// All is well.
 pub(super) const OK: u8 = 0;
@@ -57,8 +58,15 @@ impl From<gpu::Error> for Failure {
         let code = match error {
             gpu::Error::NoDevice(_) => NO_DEVICE,
             gpu::Error::Lost(_) => DEVICE_LOST,
+            gpu::Error::Misuse(_) => USAGE,
         };
         Self::new(code, error.to_string())
+    }
+}
+
+impl From<Misuse> for Failure {
+    fn from(misuse: Misuse) -> Self {
+        Self::new(USAGE, misuse.to_string())
     }
 }
 

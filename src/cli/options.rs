@@ -172,7 +172,7 @@ impl DeviceOptions {
 /// Opens a Vulkan device, and says where a tuning that is kept for it cannot be used.
 pub(super) fn open_device(choice: &Choice) -> Result<Gpu, Error> {
     let gpu = Gpu::open(choice)?;
-    if let Some(warning) = &gpu.tuned.warning {
+    if let Some(warning) = &gpu.tuned().warning {
         errln!("trueray: {warning}");
     }
     Ok(gpu)

@@ -12,7 +12,7 @@ use super::progress::{Progress, Style};
 use super::sampling::{Choice, SamplingOptions};
 use super::stats::{Sampled, Stats, peak_memory_mib};
 use crate::effects::Effects;
-use crate::engine::{Backend, Engine, render_bands, render_partial};
+use crate::engine::{Backend, Engine, Options, Pixels, render_bands, render_partial};
 use crate::film::{Format, PictureWriter, Target};
 use crate::gpu::{Ahead, Gpu};
 use crate::precision::Selection;
@@ -154,7 +154,7 @@ fn render_one(
         let sampling = choice.as_ref().map(Choice::explanation).unwrap_or_default();
         err!("{}{}{sampling}", explanation(&loaded.name, &effects), precision_explanation(&selection));
         if let Some(gpu) = gpu {
-            errln!("  tuning       {}", gpu.tuned.summary());
+            errln!("  tuning       {}", gpu.tuned().summary());
             if let Some(note) = gpu.kernel_cache_note() {
                 errln!("  note         {note}");
             }
@@ -162,38 +162,45 @@ fn render_one(
     }
     let backend = gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, selection.tier));
 
-    let mut engine = Engine::new(backend, scene, settings, &effects)?;
+    let wants_stats = args.stats || args.stats_json.is_some();
+    let options = Options { count_rays: wants_stats && !args.no_ray_counts, ..Options::default() };
+    let mut renderer = match choice {
+        None => Renderer::Whole(Engine::with(backend, scene, settings, &effects, &options)?),
+        Some(choice) => Renderer::InPart(Engine::with(backend, scene, settings, &effects, &options)?, choice),
+    };
     // The renderer has what it needs: the spheres go before paths and pixels take memory.
     let (width, height) = (scene.width, scene.height);
     let (spheres, lights) = (scene.spheres.len(), scene.lights.len());
     drop(loaded.scene);
 
-    let wants_stats = args.stats || args.stats_json.is_some();
-    if wants_stats && !args.no_ray_counts {
-        engine.count_rays();
-    }
     let mut writer = PictureWriter::create(&target, format, width, height)?;
     let mut write_time = Duration::ZERO;
     let mut progress = Progress::new(if args.quiet { Style::None } else { args.progress }, &loaded.name, height);
     let mut sampled = None;
-    let not_finite = if let Some(Choice { density, fill }) = choice {
-        let samples = Samples::new((width, height), &density);
-        engine.take_lists();
-        let whole = f64::from(height);
-        let picture = render_partial(&mut engine, backend, &samples, fill, |part| progress.set((part * whole) as u32))?;
-        let start = Instant::now();
-        writer.write_rows(&picture.rgb)?;
-        write_time += start.elapsed();
-        sampled = Some(Sampled { density, fill, pixels: samples.pixels.len() as u64, fill_ms: picture.fill_ms });
-        picture.not_finite
-    } else {
-        render_bands(&mut engine, (width, height), |band| {
+    let not_finite = match &mut renderer {
+        Renderer::InPart(engine, Choice { density, fill }) => {
+            let (density, fill) = (*density, *fill);
+            let samples = Samples::new((width, height), &density)?;
+            let whole = f64::from(height);
+            let picture = render_partial(engine, backend, &samples, fill, |part| progress.set((part * whole) as u32))?;
+            let start = Instant::now();
+            writer.write_rows(&picture.rgb)?;
+            write_time += start.elapsed();
+            let pixels = samples.pixels().len() as u64;
+            sampled = Some(Sampled { density, fill, pixels, fill_ms: picture.fill_ms });
+            picture.not_finite
+        }
+        Renderer::Whole(engine) => render_bands(engine, |band| {
             let start = Instant::now();
             writer.write_rows(band.rgb)?;
             write_time += start.elapsed();
             progress.set(band.first);
             Ok::<_, Failure>(())
-        })?
+        })?,
+    };
+    let (rays, times) = match &renderer {
+        Renderer::Whole(engine) => (engine.rays(), engine.times()),
+        Renderer::InPart(engine, _) => (engine.rays(), engine.times()),
     };
     drop(progress);
     let finishing = Instant::now();
@@ -211,16 +218,16 @@ fn render_one(
         spheres,
         lights,
         device: device_name(gpu),
-        tuning: gpu.map(|gpu| gpu.tuned.summary()),
+        tuning: gpu.map(|gpu| gpu.tuned().summary()),
         settings: *settings,
         effects,
         precision: gpu.map(|_| selection),
         sampled,
-        rays: engine.rays().filter(|_| !args.no_ray_counts),
+        rays: rays.filter(|_| !args.no_ray_counts),
         not_finite_pixels: not_finite,
         parse_ms: ms(loaded.parse_time),
         open_ms: ms(open_time),
-        times: engine.times(),
+        times,
         write_ms: ms(write_time),
         // Parsing and opening overlap.
         total_ms: ms(loaded.parse_time.max(ready_time) + start.elapsed()),
@@ -234,6 +241,12 @@ fn render_one(
         err!("{}", stats.table());
     }
     Ok(stats)
+}
+
+/// What renders all of the picture, or what renders the part of it that is sampled.
+enum Renderer<'a> {
+    Whole(Engine<'a>),
+    InPart(Engine<'a, Pixels>, Choice),
 }
 
 /// Where the picture goes and in which format.

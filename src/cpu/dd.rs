@@ -171,6 +171,11 @@ impl Real for Dd {
         self.hi
     }
 
+    #[inline]
+    fn abs(self) -> Self {
+        if self.hi < 0.0 { -self } else { self }
+    }
+
     /// `SQRTDWtoDW`.
     fn sqrt(self) -> Self {
         let root = self.hi.sqrt();

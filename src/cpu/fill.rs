@@ -3,6 +3,7 @@
 
 use rayon::prelude::*;
 
+use crate::misuse::{Misuse, check_colors};
 use crate::sampling::{Fill, NO_SAMPLE, Samples, flood_steps, packed};
 
 /// The pixel at a packed place.
@@ -27,14 +28,14 @@ const NEIGHBOURS: [[i32; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], 
 /// Where the nearest sample of each pixel lies, packed, pixels in reading order. Jump flooding may miss the nearest where several
 /// are almost equally near; between samples as even as these, tests find no such pixel.
 pub fn nearest_samples(samples: &Samples) -> Vec<u32> {
-    let (width, height) = samples.size;
+    let (width, height) = samples.size();
     let across = width as usize;
     let mut owners = vec![NO_SAMPLE; across * height as usize];
-    for &[x, y] in &samples.pixels {
+    for &[x, y] in samples.pixels() {
         owners[y as usize * across + x as usize] = packed([x, y]);
     }
     let mut next = owners.clone();
-    for step in flood_steps(samples.reach) {
+    for step in flood_steps(samples.reach()) {
         let from = Jump { size: (width, height), step: step.cast_signed(), owners: &owners };
         next.par_chunks_mut(across).enumerate().for_each(|(y, row)| {
             for (x, owner) in row.iter_mut().enumerate() {
@@ -86,14 +87,19 @@ impl Jump<'_> {
 }
 
 /// The whole picture from `colors`, one for each of `samples`, 3 bytes a pixel.
-pub fn filled(samples: &Samples, colors: &[[u8; 3]], fill: Fill) -> Vec<u8> {
-    let across = samples.size.0 as usize;
+///
+/// # Errors
+///
+/// [`Misuse::Colors`] where there is not one for each.
+pub fn filled(samples: &Samples, colors: &[[u8; 3]], fill: Fill) -> Result<Vec<u8>, Misuse> {
+    check_colors(samples.pixels().len(), colors.len())?;
+    let across = samples.size().0 as usize;
     let owners = nearest_samples(samples);
     let mut known = vec![[0; 3]; owners.len()];
-    for (&[x, y], color) in samples.pixels.iter().zip(colors) {
+    for (&[x, y], color) in samples.pixels().iter().zip(colors) {
         known[y as usize * across + x as usize] = *color;
     }
-    let sources = Sources { size: samples.size, owners: &owners, known: &known };
+    let sources = Sources { size: samples.size(), owners: &owners, known: &known };
     let mut rgb = vec![0; owners.len() * 3];
     rgb.par_chunks_mut(across * 3).enumerate().for_each(|(y, row)| {
         for (x, color) in row.as_chunks_mut::<3>().0.iter_mut().enumerate() {
@@ -104,7 +110,7 @@ pub fn filled(samples: &Samples, colors: &[[u8; 3]], fill: Fill) -> Vec<u8> {
             };
         }
     });
-    rgb
+    Ok(rgb)
 }
 
 /// What pixels are filled from.

@@ -4,8 +4,11 @@
 //! of the ray to the centre, the roots as a stable pair (Haines, Günther, Akenine-Möller, "Precision Improvements for
 //! Ray/Sphere Intersection", Ray Tracing Gems, chapter 7).
 
+use std::cmp::Ordering;
+
 use super::real::Real;
 use super::scene::{Shape, World};
+use super::tangent::Tangents;
 use super::vec3::Vec3;
 use crate::accel::REACH;
 
@@ -113,12 +116,40 @@ pub(crate) fn accepted_root<T: Real>(
         let t = exit_root(own, ray.direction, shape);
         return (own.inside && t > t_min && t < t_max).then_some((t, true));
     }
-    let (lesser, greater) = roots(&approach(ray, shape), shape.radius)?;
+    least_of(roots(&approach(ray, shape), shape.radius)?, range)
+}
+
+/// The least of both roots that counts, and whether it is the greater one.
+fn least_of<T: Real>((lesser, greater): (T, T), range: &Range<T>) -> Option<(T, bool)> {
+    let Range { t_min, t_max, .. } = *range;
     if lesser > t_min {
         (lesser < t_max).then_some((lesser, false))
     } else {
         (range.greater && greater > t_min && greater < t_max).then_some((greater, true))
     }
+}
+
+/// A ray from the eye.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Primary<'a, T> {
+    pub ray: Ray<T>,
+    /// Column and row of its sample.
+    pub sample: [u32; 2],
+    /// The spheres that it can meet.
+    pub seen: &'a [u32],
+}
+
+/// The least root of one sphere that counts along a primary ray. Whether the two meet is decided exactly.
+#[inline]
+pub(crate) fn primary_root<T: Real>(
+    ray: &Ray<T>,
+    shape: &Shape<T>,
+    range: &Range<T>,
+    tangents: &Tangents,
+    touches: impl FnOnce() -> Ordering,
+) -> Option<(T, bool)> {
+    let at = tangents.decided(approach(ray, shape), shape, touches);
+    least_of(roots(&at, shape.radius)?, range)
 }
 
 /// The nearest of `nearest` and the intersections with `spheres` in `range`; of equal ones the lowest index.
@@ -132,18 +163,35 @@ pub(super) fn nearest_of<T: Real>(
 ) -> Option<Hit<T>> {
     for &sphere in spheres {
         let sphere = sphere as usize;
-        if let Some((t, inside)) = accepted_root(ray, &world.shapes[sphere], own, range)
-            && nearest.is_none_or(|nearest| t < nearest.t || (t == nearest.t && sphere < nearest.sphere))
-        {
-            nearest = Some(Hit { t, sphere, inside });
-        }
+        nearest = nearer_of(nearest, sphere, accepted_root(ray, &world.shapes[sphere], own, range));
     }
     nearest
 }
 
-/// The nearest intersection of a primary ray, which can meet no other spheres than those `seen` from its pixel.
-pub(crate) fn nearest_seen<T: Real>(world: &World<T>, ray: &Ray<T>, seen: &[u32]) -> Option<Hit<T>> {
-    nearest_of(world, ray, None, &world.primary, seen, None)
+/// The nearer of a hit and a root of one more sphere; of equal ones the lower index.
+#[inline]
+fn nearer_of<T: Real>(nearest: Option<Hit<T>>, sphere: usize, root: Option<(T, bool)>) -> Option<Hit<T>> {
+    match root {
+        Some((t, inside))
+            if nearest.is_none_or(|nearest| t < nearest.t || (t == nearest.t && sphere < nearest.sphere)) =>
+        {
+            Some(Hit { t, sphere, inside })
+        }
+        _ => nearest,
+    }
+}
+
+/// The nearest intersection of a primary ray.
+pub(crate) fn nearest_seen<T: Real>(world: &World<T>, primary: &Primary<T>) -> Option<Hit<T>> {
+    let Primary { ray, sample, seen } = primary;
+    let mut nearest = None;
+    for &sphere in *seen {
+        let sphere = sphere as usize;
+        let touches = || world.exact.discriminant(*sample, sphere);
+        let root = primary_root(ray, &world.shapes[sphere], &world.primary, &world.tangents, touches);
+        nearest = nearer_of(nearest, sphere, root);
+    }
+    nearest
 }
 
 /// The nearest intersection of a ray that leaves a surface.

@@ -83,18 +83,18 @@ impl Judge {
     /// The decision that explains `level`, another renderer's 8-bit value of pixel (column `i`, row `j`) that differs from
     /// the reference's: the first on the paths of the pixel's samples that comes within its margin. `None`: the pixel is unexplained.
     pub fn explain(&self, reference: &Reference<f64>, i: u32, j: u32, level: [u8; 3]) -> Option<Decision> {
+        let color = reference.color(i, j)?;
         let mut decision = None;
         let (mut errors, mut magnitudes, mut count) = (DVec3::ZERO, DVec3::ZERO, 0.0);
-        for ray in reference.sample_rays(i, j) {
+        for primary in reference.primaries(i, j) {
             let mut cone = Cone::new(self);
-            let color = trace(&reference.world, ray, reference.seen(i, j), &mut cone).to_f64();
+            let color = trace(&reference.world, &primary, &mut cone).to_f64();
             // Each ray of a tree adds to a sum that rounds.
             errors += cone.color + color.abs() * (STEPS.max(cone.rays) * self.shading);
             magnitudes += color.abs();
             count += 1.0;
             decision = decision.or(cone.decision);
         }
-        let color = reference.color(i, j);
         // Each addition rounds a sum that is no greater than that of all magnitudes, twice: the differences to the first.
         let summation = if count > 1.0 { magnitudes * (2.0 * self.shading) } else { DVec3::ZERO };
         let error = errors / count + summation;

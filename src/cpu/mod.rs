@@ -11,6 +11,7 @@ mod render;
 mod scene;
 mod seen;
 mod shade;
+mod tangent;
 mod trace;
 mod trace_refraction;
 mod vec3;

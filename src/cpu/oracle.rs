@@ -11,8 +11,10 @@ use super::real::Real;
 use super::refract::{Snell, refraction_ray};
 use super::scene::{Glass, Material, Shape, World};
 use super::shade::surface_at;
+use super::tangent::Tangents;
 use super::vec3::Vec3;
 use crate::accel::Acceleration;
+use crate::exact::ExactScene;
 use crate::settings::Specular;
 
 /// What is known of a line and an ellipsoid.
@@ -137,6 +139,8 @@ fn glass_world<T: Real>(bodies: &[Body]) -> World<T> {
         specular: Specular::Phong,
         max_depth: 0,
         accel: Acceleration::default(),
+        tangents: Tangents::default(),
+        exact: ExactScene::default(),
     }
 }
 

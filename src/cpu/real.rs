@@ -38,6 +38,8 @@ pub trait Real:
     fn from_f64(x: f64) -> Self;
     /// The nearest `f64`.
     fn to_f64(self) -> f64;
+    /// |x|.
+    fn abs(self) -> Self;
     /// √x.
     fn sqrt(self) -> Self;
     /// eˣ.
@@ -74,6 +76,9 @@ macro_rules! impl_real {
             }
             fn to_f64(self) -> f64 {
                 self as f64
+            }
+            fn abs(self) -> Self {
+                self.abs()
             }
             fn sqrt(self) -> Self {
                 self.sqrt()

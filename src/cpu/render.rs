@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::intersect::{Own, Ray};
+use super::intersect::{Own, Primary, Ray};
 use super::real::Real;
 use super::scene::World;
 use super::trace::trace;
@@ -11,8 +11,10 @@ use super::vec3::Vec3;
 use super::witness::Witness;
 use crate::accel::Rounding;
 use crate::camera::Camera;
-use crate::effects::Effects;
+use crate::effects::{Effect, Effects};
+use crate::exact::ExactScene;
 use crate::geometry::in_range;
+use crate::misuse::{Misuse, check_pixels, check_rows};
 use crate::scene::Scene;
 use crate::settings::{Quantize, Settings};
 
@@ -32,27 +34,39 @@ impl<T: Real> Reference<T> {
 
     /// Likewise, with lists of spheres for a renderer that rounds like this, at least like `T`.
     pub fn with_rounding(scene: &Scene, settings: &Settings, effects: &Effects, rounding: Rounding) -> Self {
+        let exact = ExactScene::new(scene, settings, effects.set.has(Effect::Ellipsoids));
+        let (near, eye) = (scene.window.near, settings.view.eye.length());
         let (scene, settings) = in_range(scene, settings);
         let camera = Camera::new(&scene, &settings);
-        Self { world: World::new(&scene, &settings, effects, &camera, rounding), camera, quantize: settings.quantize }
+        let eye = eye * (scene.window.near / near);
+        Self {
+            world: World::new(&scene, &settings, effects, &camera, rounding, exact, eye),
+            camera,
+            quantize: settings.quantize,
+        }
     }
 
     /// The ray of the sample in sample column `i` and sample row `j`.
-    pub(super) fn primary_ray(&self, i: u32, j: u32) -> Ray<T> {
+    fn primary_ray(&self, [i, j]: [u32; 2]) -> Ray<T> {
         let direction = Vec3::from_f64(self.camera.column(i)) + Vec3::from_f64(self.camera.row(j));
         Ray { origin: Vec3::ZERO, direction }
     }
 
-    /// The unclamped colour of pixel (column `i`, row `j`).
-    pub fn color(&self, i: u32, j: u32) -> DVec3 {
-        self.pixel_color(i, j, &mut ()).to_f64()
+    /// Width and height of the picture.
+    pub fn size(&self) -> (u32, u32) {
+        (self.camera.width(), self.camera.height())
+    }
+
+    /// The unclamped colour of pixel (column `i`, row `j`); `None` where the picture has no such pixel.
+    pub fn color(&self, i: u32, j: u32) -> Option<DVec3> {
+        let (width, height) = self.size();
+        (i < width && j < height).then(|| self.pixel_color(i, j, &mut ()).to_f64())
     }
 
     /// The colour of a pixel: the mean over its samples, row by row, unclamped; read it beside `shaders/main.wgsl`. Taken
     /// from differences to the first sample, it is exact where all are equal.
     fn pixel_color<W: Witness<T>>(&self, i: u32, j: u32, witness: &mut W) -> Vec3<T> {
-        let seen = self.seen(i, j);
-        let mut samples = self.sample_rays(i, j).map(|ray| trace(&self.world, ray, seen, witness));
+        let mut samples = self.primaries(i, j).map(|primary| trace(&self.world, &primary, witness));
         let Some(first) = samples.next() else { return Vec3::ZERO };
         let mut excess = Vec3::ZERO;
         for color in samples {
@@ -66,21 +80,25 @@ impl<T: Real> Reference<T> {
         first + Vec3::new(excess.x / count, excess.y / count, excess.z / count)
     }
 
-    /// The spheres that pixel (column `i`, row `j`) may see.
-    pub(super) fn seen(&self, i: u32, j: u32) -> &[u32] {
-        self.world.accel.screen.at(i, j)
-    }
-
     /// The rays of all samples of pixel (column `i`, row `j`), row by row.
-    pub(super) fn sample_rays(&self, i: u32, j: u32) -> impl Iterator<Item = Ray<T>> {
+    pub(super) fn primaries(&self, i: u32, j: u32) -> impl Iterator<Item = Primary<'_, T>> {
         let side = self.camera.samples();
-        (0..side * side).map(move |s| self.primary_ray(i * side + s % side, j * side + s / side))
+        let seen = self.world.accel.screen.at(i, j);
+        (0..side * side).map(move |s| {
+            let sample = [i * side + s % side, j * side + s / side];
+            Primary { ray: self.primary_ray(sample), sample, seen }
+        })
     }
 
     /// Renders whole rows from row `first` on into `rgb`, 3 bytes a pixel, in parallel.
-    pub fn rows(&self, first: u32, rgb: &mut [u8]) -> Tally {
+    ///
+    /// # Errors
+    ///
+    /// [`Misuse::Rows`] where these are no rows of the picture.
+    pub fn rows(&self, first: u32, rgb: &mut [u8]) -> Result<Tally, Misuse> {
         // A few hundred pixels a task balance the load and keep the cost of a task invisible.
         const CHUNK: usize = 256;
+        check_rows(self.size(), first, rgb.len())?;
         let width = self.camera.width() as usize;
         let samples = u64::from(self.camera.samples() * self.camera.samples());
         let chunk = |(chunk, pixels): (usize, &mut [u8])| {
@@ -95,13 +113,16 @@ impl<T: Real> Reference<T> {
             }
             tally
         };
-        rgb.par_chunks_mut(CHUNK * 3).enumerate().map(chunk).reduce(Tally::default, Tally::plus)
+        Ok(rgb.par_chunks_mut(CHUNK * 3).enumerate().map(chunk).reduce(Tally::default, Tally::plus))
     }
-}
 
-impl<T: Real> Reference<T> {
     /// Renders the pixels in these columns and rows, each with the value that it has in the full picture, in parallel.
-    pub fn pixels(&self, pixels: &[[u32; 2]], colors: &mut [[u8; 3]]) -> Tally {
+    ///
+    /// # Errors
+    ///
+    /// [`Misuse::Pixel`] where a pixel is not of the picture, [`Misuse::Colors`] where there is not one colour for each.
+    pub fn pixels(&self, pixels: &[[u32; 2]], colors: &mut [[u8; 3]]) -> Result<Tally, Misuse> {
+        check_pixels(self.size(), pixels, colors.len())?;
         let samples = u64::from(self.camera.samples() * self.camera.samples());
         let each = |(&[i, j], target): (&[u32; 2], &mut [u8; 3])| {
             let mut tally = Tally::default();
@@ -109,7 +130,7 @@ impl<T: Real> Reference<T> {
             *target = self.quantize.levels(color);
             tally.plus(Tally { primary: samples, not_finite: u64::from(!color.is_finite()), ..Tally::default() })
         };
-        pixels.par_iter().zip(colors).with_min_len(256).map(each).reduce(Tally::default, Tally::plus)
+        Ok(pixels.par_iter().zip(colors).with_min_len(256).map(each).reduce(Tally::default, Tally::plus))
     }
 }
 

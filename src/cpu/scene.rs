@@ -1,11 +1,15 @@
 //! The scene in the scalar of the reference.
 
+use rayon::prelude::*;
+
 use super::intersect::Range;
 use super::real::Real;
+use super::tangent::Tangents;
 use super::vec3::Vec3;
 use crate::accel::{Acceleration, Rounding};
 use crate::camera::Camera;
 use crate::effects::{Effect, EffectSet, Effects};
+use crate::exact::ExactScene;
 use crate::geometry::{Ellipsoid, ellipsoids, shape_indices};
 use crate::scene::{Light, Scene, Sphere};
 use crate::settings::{Settings, Specular};
@@ -84,6 +88,10 @@ pub(crate) struct World<T> {
     pub max_depth: u32,
     /// Which spheres a ray can meet.
     pub accel: Acceleration,
+    /// Which primary rays may just touch a sphere,
+    pub tangents: Tangents,
+    /// and whether they do.
+    pub exact: ExactScene,
 }
 
 impl<T: Real> World<T> {
@@ -93,8 +101,11 @@ impl<T: Real> World<T> {
         effects: &Effects,
         camera: &Camera,
         rounding: Rounding,
+        exact: ExactScene,
+        eye: f64,
     ) -> Self {
         let on = |effect| effects.set.has(effect);
+        let lit = on(Effect::Diffuse) || on(Effect::Specular);
         let ellipsoids = ellipsoids(scene, on(Effect::Ellipsoids));
         let indices = if effects.set.has_secondary_rays() {
             shape_indices(&scene.spheres, on(Effect::Ellipsoids)).unwrap_or_default()
@@ -112,7 +123,8 @@ impl<T: Real> World<T> {
             shapes: ellipsoids.iter().enumerate().map(shape).collect(),
             materials: scene.spheres.iter().zip(&ellipsoids).map(|(s, e)| Material::new(s, e, effects.set)).collect(),
             glasses: scene.spheres.iter().filter(|_| on(Effect::Refraction)).map(Glass::new).collect(),
-            lights: scene.lights.iter().map(PointLight::new).collect(),
+            // Where nothing is lit, no light is asked for.
+            lights: scene.lights.iter().filter(|_| lit).map(PointLight::new).collect(),
             ambient: Vec3::from_f64(scene.ambient),
             background: Vec3::from_f64(scene.background),
             primary: if on(Effect::Shells) { range(camera.t_min(), true) } else { range(0.0, false) },
@@ -124,6 +136,8 @@ impl<T: Real> World<T> {
             specular: settings.specular,
             max_depth: effects.depth,
             accel: Acceleration::new(scene, camera, effects.set, rounding),
+            tangents: Tangents::of(ellipsoids.par_iter().copied(), eye, camera, T::ROUNDING.tests),
+            exact,
         }
     }
 }

@@ -2,10 +2,13 @@
 
 use glam::DVec3;
 
-use super::intersect::{Range, Ray, accepted_root};
+use super::intersect::{Range, Ray, primary_root};
+use super::real::Real as _;
 use super::scene::Shape;
+use super::tangent::Tangents;
 use super::vec3::Vec3;
 use crate::camera::Camera;
+use crate::exact::ExactCamera;
 use crate::geometry::{Ellipsoid, in_range};
 use crate::scene::Scene;
 use crate::settings::Settings;
@@ -26,18 +29,27 @@ pub struct Seen {
 /// What pixel (column `x`, row `y`) shows: that of its samples which is next to the middle. Tries every sphere once, which is
 /// less work for a single ray than any list.
 pub fn seen_through(scene: &Scene, settings: &Settings, x: u32, y: u32) -> Option<Seen> {
+    if x >= scene.width || y >= scene.height {
+        return None;
+    }
     let (world, settings_in_range) = in_range(scene, settings);
     let camera = Camera::new(&world, &settings_in_range);
     let middle = settings.samples / 2;
-    let direction = camera.column(x * settings.samples + middle) + camera.row(y * settings.samples + middle);
+    let sample = [x, y].map(|at| at * settings.samples + middle);
+    let direction = camera.column(sample[0]) + camera.row(sample[1]);
     let ray = Ray::<f64> { origin: Vec3::ZERO, direction: Vec3::from_f64(direction) };
+    let exact = ExactCamera::new(scene, settings);
+    let eye = settings.view.eye.length() * (world.window.near / scene.window.near);
     let mut range = Range { t_min: camera.t_min(), t_max: f64::INFINITY, greater: true };
     let mut nearest = None;
-    for (sphere, ellipsoid) in world.spheres.iter().enumerate() {
-        let Ellipsoid { center, inv_scale, radius, .. } = Ellipsoid::new(ellipsoid);
+    for (sphere, (ellipsoid, in_file)) in world.spheres.iter().zip(&scene.spheres).enumerate() {
+        let ellipsoid = Ellipsoid::new(ellipsoid);
+        let tangents = Tangents::of(rayon::iter::once(ellipsoid), eye, &camera, f64::ROUNDING.tests);
+        let touches = || exact.discriminant(sample, in_file.center, in_file.scale);
+        let Ellipsoid { center, inv_scale, radius, .. } = ellipsoid;
         let (center, inv_scale) = (Vec3::from_f64(center), Vec3::from_f64(inv_scale));
         let shape = Shape { center, inv_scale, radius, index: sphere as u32 };
-        if let Some((t, inside)) = accepted_root(&ray, &shape, None, &range) {
+        if let Some((t, inside)) = primary_root(&ray, &shape, &range, &tangents, touches) {
             range.t_max = t;
             nearest = Some((sphere, inside));
         }

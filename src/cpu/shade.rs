@@ -98,6 +98,6 @@ pub(crate) fn local_color<T: Real, W: Witness<T>>(world: &World<T>, surface: &Su
     color
 }
 
-fn max<T: Real>(a: T, b: T) -> T {
+pub(crate) fn max<T: Real>(a: T, b: T) -> T {
     if a > b { a } else { b }
 }

@@ -1,7 +1,7 @@
 //! A pixel's colour: the primary ray and its chain of reflections; read it beside `shaders/stages.wgsl` and
 //! `shaders/paths.wgsl`.
 
-use super::intersect::{Ray, nearest_secondary, nearest_seen};
+use super::intersect::{Primary, Ray, nearest_secondary, nearest_seen};
 use super::real::Real;
 use super::scene::World;
 use super::shade::{Surface, local_color, surface_at};
@@ -9,18 +9,13 @@ use super::trace_refraction::trace_refraction;
 use super::vec3::Vec3;
 use super::witness::Witness;
 
-/// The unclamped colour seen along `primary`, which can meet no other spheres than those `seen`.
-pub(crate) fn trace<T: Real, W: Witness<T>>(
-    world: &World<T>,
-    primary: Ray<T>,
-    seen: &[u32],
-    witness: &mut W,
-) -> Vec3<T> {
+/// The unclamped colour seen along `primary`.
+pub(crate) fn trace<T: Real, W: Witness<T>>(world: &World<T>, primary: &Primary<T>, witness: &mut W) -> Vec3<T> {
     if world.refracts {
-        return trace_refraction(world, primary, seen, witness);
+        return trace_refraction(world, primary, witness);
     }
-    let mut ray = primary;
-    let mut hit = nearest_seen(world, &ray, seen);
+    let mut ray = primary.ray;
+    let mut hit = nearest_seen(world, primary);
     witness.nearest(world, &ray, None, &world.primary, hit.as_ref());
     if hit.is_none() {
         return world.background;

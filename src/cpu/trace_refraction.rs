@@ -1,7 +1,7 @@
 //! A pixel's colour where something refracts: the primary ray and its tree of reflections and refractions; read it beside
 //! `shaders/trace_refraction.wgsl`.
 
-use super::intersect::{Own, Ray, nearest_secondary, nearest_seen};
+use super::intersect::{Own, Primary, Ray, nearest_secondary, nearest_seen};
 use super::real::Real;
 use super::refract::{Snell, refraction_ray};
 use super::scene::World;
@@ -24,11 +24,10 @@ struct Pending<T> {
 #[inline(never)]
 pub(super) fn trace_refraction<T: Real, W: Witness<T>>(
     world: &World<T>,
-    primary: Ray<T>,
-    seen: &[u32],
+    primary: &Primary<T>,
     witness: &mut W,
 ) -> Vec3<T> {
-    let (mut ray, mut own, mut range) = (primary, None, world.primary);
+    let (mut ray, mut own, mut range) = (primary.ray, None, world.primary);
     let mut color = Vec3::ZERO;
     let mut throughput = T::ONE;
     let mut depth = 0;
@@ -37,7 +36,7 @@ pub(super) fn trace_refraction<T: Real, W: Witness<T>>(
     let mut shows_background = true;
     loop {
         let hit = match &own {
-            None => nearest_seen(world, &ray, seen),
+            None => nearest_seen(world, primary),
             Some(own) => nearest_secondary(world, &ray, own, &range),
         };
         witness.nearest(world, &ray, own.as_ref(), &range, hit.as_ref());

@@ -4,36 +4,21 @@ use std::time::{Duration, Instant};
 
 use super::{Backend, Engine, ms};
 use crate::cpu;
-use crate::gpu::{self, Reconstructor};
+use crate::gpu::{self, Pixels, Reconstructor};
+use crate::misuse::Misuse;
 use crate::sampling::{Fill, Samples};
 
-impl Engine<'_> {
-    /// Renders lists of pixels from now on, and no rows; before the first picture only.
-    pub fn take_lists(&mut self) {
-        if let Self::Gpu(gpu, _) = self {
-            gpu.take_lists();
-        }
-    }
-
-    /// A pixel is expected to take so long, in ms.
-    pub fn expect(&mut self, pixel_ms: f64) {
-        if let Self::Gpu(gpu, _) = self {
-            gpu.expect(pixel_ms);
-        }
-    }
-
-    /// Renders the pixels in these columns and rows, after [`Engine::take_lists`]: each has the value that it has in the full
-    /// picture. Returns how many are not finite.
+impl Engine<'_, Pixels> {
+    /// Renders the pixels in these columns and rows: each has the value that it has in the full picture. Returns how many are not
+    /// finite.
+    ///
+    /// # Errors
+    ///
+    /// [`gpu::Error::Misuse`] where a pixel is not of the picture, or there is not one colour for each.
     pub fn pixels(&mut self, pixels: &[[u32; 2]], colors: &mut [[u8; 3]]) -> Result<u64, gpu::Error> {
         match self {
-            Self::Cpu(cpu) => {
-                let start = Instant::now();
-                let tally = cpu.reference.pixels(pixels, colors);
-                cpu.render += start.elapsed();
-                cpu.tally = cpu.tally.plus(tally);
-                Ok(tally.not_finite)
-            }
-            Self::Gpu(gpu, _) => gpu.pixels(pixels, colors),
+            Self::Cpu(cpu) => Ok(cpu.timed(|reference| reference.pixels(pixels, colors))?),
+            Self::Gpu(gpu, _) => Ok(gpu.pixels(pixels, colors)?.not_finite),
         }
     }
 }
@@ -76,7 +61,7 @@ impl<'a> Filler<'a> {
     /// The whole picture from `colors`, one for each of `samples`, 3 bytes a pixel.
     pub fn filled(&mut self, samples: &Samples, colors: &[[u8; 3]], fill: Fill) -> Result<Vec<u8>, gpu::Error> {
         match self {
-            Self::Cpu => Ok(cpu::filled(samples, colors, fill)),
+            Self::Cpu => Ok(cpu::filled(samples, colors, fill)?),
             Self::Gpu(reconstructor) => reconstructor.filled(samples, colors, fill),
         }
     }
@@ -93,25 +78,32 @@ pub struct PartialPicture {
     pub fill_ms: f64,
 }
 
-/// Renders `samples` with an engine that takes lists, and fills the other pixels. `done` hears of the part that is rendered.
+/// Renders `samples`, and fills the other pixels. `done` hears of the part that is rendered.
+///
+/// # Errors
+///
+/// [`gpu::Error::Misuse`] where they are samples of a picture of another size.
 pub fn render_partial(
-    engine: &mut Engine,
+    engine: &mut Engine<Pixels>,
     backend: Backend,
     samples: &Samples,
     fill: Fill,
     mut done: impl FnMut(f64),
 ) -> Result<PartialPicture, gpu::Error> {
     const PIXELS_AT_ONCE: usize = 1 << 18;
-    let mut colors = vec![[0; 3]; samples.pixels.len()];
+    if samples.size() != engine.size() {
+        return Err(Misuse::Samples { of: samples.size(), size: engine.size() }.into());
+    }
+    let mut colors = vec![[0; 3]; samples.pixels().len()];
     let mut not_finite = 0;
     let mut rendered = 0;
-    for (pixels, colors) in samples.pixels.chunks(PIXELS_AT_ONCE).zip(colors.chunks_mut(PIXELS_AT_ONCE)) {
+    for (pixels, colors) in samples.pixels().chunks(PIXELS_AT_ONCE).zip(colors.chunks_mut(PIXELS_AT_ONCE)) {
         not_finite += engine.pixels(pixels, colors)?;
         rendered += pixels.len();
-        done(rendered as f64 / samples.pixels.len() as f64);
+        done(rendered as f64 / samples.pixels().len() as f64);
     }
     let start = Instant::now();
-    let is_full = samples.pixels.len() as u64 == u64::from(samples.size.0) * u64::from(samples.size.1);
+    let is_full = samples.pixels().len() as u64 == u64::from(samples.size().0) * u64::from(samples.size().1);
     let rgb =
         if is_full { in_place(samples, &colors) } else { Filler::new(backend)?.filled(samples, &colors, fill)? };
     let fill_ms = if is_full { Duration::ZERO } else { start.elapsed() };
@@ -120,10 +112,10 @@ pub fn render_partial(
 
 /// The picture of `colors`, one for each of `samples`; black elsewhere.
 fn in_place(samples: &Samples, colors: &[[u8; 3]]) -> Vec<u8> {
-    let (width, height) = samples.size;
+    let (width, height) = samples.size();
     let mut rgb = vec![0; width as usize * height as usize * 3];
     let pixels = rgb.as_chunks_mut::<3>().0;
-    for (&[x, y], color) in samples.pixels.iter().zip(colors) {
+    for (&[x, y], color) in samples.pixels().iter().zip(colors) {
         pixels[y as usize * width as usize + x as usize] = *color;
     }
     rgb

@@ -15,6 +15,7 @@ use super::selftest::SelfTest;
 use super::shader::{Kernel, Module, Textures};
 use super::spirv::Parsed;
 use super::tuned::DeviceTuning;
+use crate::misuse::Misuse;
 use crate::precision::Tier;
 use crate::tuning::Tuning;
 
@@ -137,8 +138,7 @@ impl fmt::Display for DeviceInfo {
 pub struct Gpu {
     /// What it is.
     pub info: DeviceInfo,
-    /// What is tuned to it.
-    pub tuned: DeviceTuning,
+    tuned: DeviceTuning,
     pub(super) device: wgpu::Device,
     pub(super) queue: wgpu::Queue,
     /// Whether host and device share memory, so that a storage buffer can be mapped.
@@ -249,9 +249,22 @@ impl Gpu {
         }
     }
 
-    /// Renders with `tuning` from now on, which has to be one that [`DeviceInfo::problem_with`] has no objection to.
-    pub fn set_tuning(&mut self, tuning: Tuning) {
-        self.tuned.tuning = tuning;
+    /// What is tuned to it.
+    pub fn tuned(&self) -> &DeviceTuning {
+        &self.tuned
+    }
+
+    /// Renders with `tuning` from now on.
+    ///
+    /// # Errors
+    ///
+    /// [`Misuse::Tuning`] where [`DeviceInfo::problem_with`] has an objection; then nothing changes.
+    pub fn set_tuning(&mut self, tuning: Tuning) -> Result<(), Misuse> {
+        match self.info.problem_with(&tuning) {
+            None => self.tuned.tuning = tuning,
+            Some(problem) => return Err(Misuse::Tuning(problem)),
+        }
+        Ok(())
     }
 
     /// Uses what was done before the device was open.
@@ -347,7 +360,7 @@ impl Gpu {
             #[allow(
                 unsafe_code,
                 reason = "naga has validated the module; its SPIR-V has some decorations more, and functions in the place of \
-                          their calls: tests hold that it is well formed"
+                          their calls: tests hold that it is well formed. Runtime checks it has none: see shader_module"
             )]
             unsafe {
                 self.device.create_shader_module_passthrough(wgpu::ShaderModuleDescriptorPassthrough {
@@ -371,7 +384,8 @@ impl Gpu {
             #[allow(
                 unsafe_code,
                 reason = "runtime checks cost up to 30 %: every index is below a length that the host set with the \
-                          buffers, every loop counts up to a bound, no integer is divided by 0"
+                          buffers, or has checked (src/misuse.rs, src/gpu/probe/check.rs), every loop counts up to a \
+                          bound, no integer is divided by 0"
             )]
             unsafe {
                 self.device.create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked())

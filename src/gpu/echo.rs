@@ -7,7 +7,8 @@ use super::pack::Packed;
 use super::shader::{Kernel, Module};
 use crate::accel::Acceleration;
 use crate::camera::Camera;
-use crate::effects::Effects;
+use crate::effects::{EffectSet, Effects};
+use crate::misuse::{Misuse, check_picture};
 use crate::scene::Scene;
 use crate::settings::Settings;
 
@@ -16,6 +17,10 @@ const COUNTS: [usize; 4] = [29, 19, 6, 6];
 
 /// Packs `scene` and lets the device write back every field in the order of `shaders/echo.wgsl`: numbers as the bits of
 /// their nearest `f32`.
+///
+/// # Errors
+///
+/// [`Misuse::Picture`] where the scene is not one of two spheres with all effects, the only one that the kernel reads.
 pub fn echo_layout(
     gpu: &Gpu,
     scene: &Scene,
@@ -23,6 +28,10 @@ pub fn echo_layout(
     effects: &Effects,
     kernel: Kernel,
 ) -> Result<Vec<u32>, Error> {
+    check_picture(scene, settings)?;
+    if scene.spheres.len() != 2 || effects.set != EffectSet::ALL {
+        return Err(Misuse::Picture("only two spheres with all effects are echoed".into()).into());
+    }
     let accel = Acceleration::new(scene, &Camera::new(scene, settings), effects.set, kernel.rounding());
     let packed = Packed::new(scene, settings, effects, kernel, &accel, None);
     let [head, sphere, light, tail] = COUNTS;

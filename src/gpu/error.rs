@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::misuse::Misuse;
+
 /// Why there is no picture from the GPU.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Error {
@@ -9,6 +11,8 @@ pub enum Error {
     NoDevice(String),
     /// The device was lost, or failed, while it worked.
     Lost(String),
+    /// What is asked for makes no sense on any device.
+    Misuse(Misuse),
 }
 
 impl Error {
@@ -22,11 +26,18 @@ impl Error {
     }
 }
 
+impl From<Misuse> for Error {
+    fn from(misuse: Misuse) -> Self {
+        Self::Misuse(misuse)
+    }
+}
+
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoDevice(why) => f.write_str(why),
             Self::Lost(why) => write!(f, "the device was lost: {why}"),
+            Self::Misuse(misuse) => misuse.fmt(f),
         }
     }
 }

@@ -30,7 +30,7 @@ pub use error::Error;
 pub use pipeline::{SEE_SAMPLES, SEE_TILES, SHADE_PATHS, Specialisation, WALK_PATHS};
 pub use probe::{Answer, Batch, ProbeRay, Prober, Question, RawBatch, Surface};
 pub use reconstruct::Reconstructor;
-pub use render::{DeviceTimes, GpuRenderer};
+pub use render::{DeviceTimes, GpuRenderer, Options, Output, Pixels, Rendered, Rows};
 pub use selftest::SelfTest;
 pub use shader::{Kernel, Module, Places, Slots, Storage, Textures, Variant, Walk};
 pub use spirv::Parsed;

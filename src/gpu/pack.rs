@@ -177,9 +177,12 @@ fn pack<'a, L: Layout + 'a>(
         shape_value(&ellipsoid(&scene.spheres[i], true_axes), index, true_axes)
     };
     let [columns, rows] = [scene.width, scene.height].map(|size| size.next_multiple_of(TILE) * settings.samples);
-    let window = || (0..columns).map(|i| camera.column(i)).chain((0..rows).map(|j| camera.row(j)));
-    let window_low = with_low.then(|| window().map(residual::<L>)).into_iter().flatten();
-    let window: Vec<DVec3> = window().chain(window_low).collect();
+    let places = columns + rows;
+    let place = move |i: u32| if i < columns { camera.column(i) } else { camera.row(i - columns) };
+    let window = move |i: usize| match (i as u32).checked_sub(places) {
+        None => place(i as u32),
+        Some(i) => residual::<L>(place(i)),
+    };
     let bases = list_bases(accel);
     let params = ParamValues {
         background: scene.background,
@@ -190,7 +193,7 @@ fn pack<'a, L: Layout + 'a>(
         quantize_bias: settings.quantize.bias(),
         window_rows: columns,
         lists: list_values(accel, &bases),
-        window_low: columns + rows,
+        window_low: places,
         light_count: scene.lights.len() as u32,
         max_depth: effects.depth,
     };
@@ -220,8 +223,10 @@ fn pack<'a, L: Layout + 'a>(
         materials: Contents::part(spheres, 0..material_size, material),
         glasses: Contents::new(if on(Effect::Refraction) { spheres } else { 0 }, |i| L::glass(&scene.spheres[i])),
         lights: Contents::new(lights.len(), |i| L::light(&lights[i])),
-        window: Contents::new(window.len(), move |i| window[i].extend(0.0).to_array().map(L::real)),
-        faces: Contents::new(faces.len(), move |i| L::face(&faces[i].0, faces[i].1)),
+        window: Contents::new((places as usize) << u32::from(with_low), move |i| {
+            window(i).extend(0.0).to_array().map(L::real)
+        }),
+        faces: Contents::new(faces.len(), move |i| L::face(&faces[i].0, faces[i].1 as u32)),
         low: with_low.then(|| {
             let lights = Contents::new(lights.len(), |i| L::light(&low_light::<L>(&lights[i])));
             (halves(true), lights)
@@ -234,15 +239,16 @@ fn all_lists(accel: &Acceleration) -> impl Iterator<Item = &Lists> {
     std::iter::once(&accel.screen.lists).chain(&accel.lights.lists).chain(accel.grid.iter().map(|grid| &grid.lists))
 }
 
-/// Where in the cells of all lists those of each begin.
-fn list_bases(accel: &Acceleration) -> Vec<u32> {
-    let next = |base: &mut u32, lists: &Lists| Some(std::mem::replace(base, *base + lists.cells() as u32));
+/// Where in the cells of all lists those of each begin. What no `u32` holds is refused before it is packed, like all that no texture
+/// holds.
+fn list_bases(accel: &Acceleration) -> Vec<usize> {
+    let next = |base: &mut usize, lists: &Lists| Some(std::mem::replace(base, *base + lists.cells()));
     all_lists(accel).scan(0, next).collect()
 }
 
-/// Where in the entries of all lists those of each begin.
-fn entry_bases(accel: &Acceleration) -> impl Iterator<Item = u32> {
-    let next = |base: &mut u32, lists: &Lists| Some(std::mem::replace(base, *base + lists.entries.len() as u32));
+/// Likewise in the entries.
+fn entry_bases(accel: &Acceleration) -> impl Iterator<Item = usize> {
+    let next = |base: &mut usize, lists: &Lists| Some(std::mem::replace(base, *base + lists.entries.len()));
     all_lists(accel).scan(0, next)
 }
 
@@ -250,14 +256,15 @@ fn entry_bases(accel: &Acceleration) -> impl Iterator<Item = u32> {
 pub(super) fn list_contents(accel: &Acceleration) -> [Contents<'_>; 2] {
     let cells = all_lists(accel).zip(entry_bases(accel)).map(|(lists, base)| {
         let offsets = &lists.offsets;
-        Contents::new(lists.cells(), move |index: usize| [offsets[index] + base, offsets[index + 1] + base])
+        let place = move |index: usize| (offsets[index] as usize + base) as u32;
+        Contents::new(lists.cells(), move |index: usize| [place(index), place(index + 1)])
     });
     let entries = all_lists(accel).map(|lists| Contents::packed(&lists.entries));
     [Contents::joined(cells.collect()), Contents::joined(entries.collect())]
 }
 
 /// Where the shader finds the lists, of which the cells begin at these places.
-fn list_values(accel: &Acceleration, cell_bases: &[u32]) -> ListValues {
+fn list_values(accel: &Acceleration, cell_bases: &[usize]) -> ListValues {
     let screen = ListValues {
         screen_shift: accel.screen.shift,
         screen_across: accel.screen.across,
@@ -271,8 +278,8 @@ fn list_values(accel: &Acceleration, cell_bases: &[u32]) -> ListValues {
             grid_low: grid.low,
             grid_per_unit: grid.per_unit,
             grid_cells: grid.cells,
-            grid_first: cell_bases.last().copied().unwrap_or_default(),
-            grid_entries: entry_bases(accel).last().unwrap_or_default(),
+            grid_first: cell_bases.last().copied().unwrap_or_default() as u32,
+            grid_entries: entry_bases(accel).last().unwrap_or_default() as u32,
             ..screen
         },
     }

@@ -314,7 +314,7 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
             return Ok(Stages { see: see()?, bounce: None, resolve: resolve()? });
         }
         let see = scope.spawn(see);
-        let bounce = || {
+        let bounce = || -> Result<Bounce, Error> {
             if let Walk::InTurn(_) = specialisation.walk {
                 let shade = scope.spawn(|| kernel(SHADE_PATHS, &[(11, vectors), (22, words)]));
                 let walk = kernel(WALK_PATHS, &[&[(11, vectors), (23, Texels(1))][..], copies].concat())?;

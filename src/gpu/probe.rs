@@ -1,5 +1,7 @@
 //! Rays in batches through the very code that renders: the same shader files with the entry points of `shaders/probe.wgsl`.
 
+mod check;
+
 use std::collections::HashMap;
 use std::time::{Duration, Instant};
 
@@ -215,8 +217,9 @@ impl<'a> Prober<'a> {
         self.busy
     }
 
-    /// Answers `question` for every ray of `batch`, in order.
+    /// Answers `question` for every ray of `batch`, in order; [`Error::Misuse`] where the parts of the batch do not fit together.
     pub fn ask(&mut self, question: Question, batch: &Batch) -> Result<Vec<Answer>, Error> {
+        batch.check(question)?;
         self.prepare(question)?;
         let mut answers = Vec::with_capacity(batch.rays.len());
         for (chunk, rays) in batch.rays.chunks(MAX_RAYS).enumerate() {
@@ -236,8 +239,9 @@ impl<'a> Prober<'a> {
         Ok(answers)
     }
 
-    /// The nearest hit of every ray with its shape.
+    /// The nearest hit of every ray with its shape; [`Error::Misuse`] where there is not one for each.
     pub fn ask_raw(&mut self, batch: &RawBatch) -> Result<Vec<Answer>, Error> {
+        batch.check()?;
         self.prepare(Question::Nearest)?;
         let mut answers = Vec::with_capacity(batch.rays.len());
         for (rays, shapes) in batch.rays.chunks(MAX_RAYS).zip(batch.shapes.chunks(MAX_RAYS)) {

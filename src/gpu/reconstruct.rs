@@ -9,6 +9,7 @@ use super::device::Gpu;
 use super::error::Error;
 use super::readable::Readable;
 use super::shader::Module;
+use crate::misuse::check_colors;
 use crate::sampling::{Fill, NO_SAMPLE, Samples, flood_steps, packed};
 
 /// Invocations of a workgroup, which lie in a row.
@@ -35,7 +36,12 @@ impl<'a> Reconstructor<'a> {
     }
 
     /// The whole picture from `colors`, one for each of `samples`, 3 bytes a pixel.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Misuse`] where there is not one for each.
     pub fn filled(&mut self, samples: &Samples, colors: &[[u8; 3]], fill: Fill) -> Result<Vec<u8>, Error> {
+        check_colors(samples.pixels().len(), colors.len())?;
         let gpu = self.gpu;
         let kernel = match self.fills.entry(fill) {
             Entry::Occupied(entry) => entry.into_mut(),
@@ -44,7 +50,7 @@ impl<'a> Reconstructor<'a> {
         .clone();
         let owners = self.flood(samples)?;
         let mut known = vec![0_u32; pixel_count(samples)];
-        for (pixel, &[r, g, b]) in samples.pixels.iter().zip(colors) {
+        for (pixel, &[r, g, b]) in samples.pixels().iter().zip(colors) {
             known[index(samples, *pixel)] = u32::from_le_bytes([r, g, b, 0]);
         }
         let picture = gpu.checked("filling a picture", || {
@@ -75,7 +81,7 @@ impl<'a> Reconstructor<'a> {
             return Err(Error::NoDevice(message));
         }
         let mut owners = vec![NO_SAMPLE; pixel_count(samples)];
-        for pixel in &samples.pixels {
+        for pixel in samples.pixels() {
             owners[index(samples, *pixel)] = packed(*pixel);
         }
         gpu.checked("finding nearest samples", || {
@@ -83,7 +89,7 @@ impl<'a> Reconstructor<'a> {
             let mut ends = [Readable::new(gpu, owners.len() as u64), Readable::new(gpu, owners.len() as u64)];
             let mut groups = Vec::new();
             let mut from = &first;
-            for (pass, step) in flood_steps(samples.reach).into_iter().enumerate() {
+            for (pass, step) in flood_steps(samples.reach()).into_iter().enumerate() {
                 let to = &ends[pass % 2].buffer;
                 groups.push(bind(gpu, &self.jump, &[&params(gpu, samples, step), from, to]));
                 from = to;
@@ -97,16 +103,16 @@ impl<'a> Reconstructor<'a> {
 }
 
 fn pixel_count(samples: &Samples) -> usize {
-    samples.size.0 as usize * samples.size.1 as usize
+    samples.size().0 as usize * samples.size().1 as usize
 }
 
 fn index(samples: &Samples, [x, y]: [u32; 2]) -> usize {
-    y as usize * samples.size.0 as usize + x as usize
+    y as usize * samples.size().0 as usize + x as usize
 }
 
 /// What `Flood` of `shaders/flood.wgsl` reads.
 fn params(gpu: &Gpu, samples: &Samples, step: u32) -> wgpu::Buffer {
-    let contents = [samples.size.0, samples.size.1, step, 0];
+    let contents = [samples.size().0, samples.size().1, step, 0];
     let contents = bytemuck::cast_slice(&contents);
     let usage = wgpu::BufferUsages::UNIFORM;
     gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
@@ -142,7 +148,7 @@ fn bind(gpu: &Gpu, pipeline: &wgpu::ComputePipeline, buffers: &[&wgpu::Buffer]) 
 
 /// Runs a kernel over all pixels, once for each group.
 fn run(gpu: &Gpu, pipeline: &wgpu::ComputePipeline, samples: &Samples, groups: &[wgpu::BindGroup]) {
-    let (width, height) = samples.size;
+    let (width, height) = samples.size();
     // A dispatch of its own for each, so that none is long.
     for group in groups {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());

@@ -1,14 +1,17 @@
-//! Rows of pixels from the device: tiles in dispatches that stay short, read back and put in place.
+//! Pixels from the device: tiles or lists of them in dispatches that stay short, read back and put in place.
 
-mod list;
 mod order;
+mod output;
+mod pixels;
 mod place;
+mod rows;
+mod tiles;
 
+use std::marker::PhantomData;
 use std::num::NonZero;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use rayon::prelude::*;
 use wgpu::util::DeviceExt;
 
 use super::device::Gpu;
@@ -25,18 +28,38 @@ use crate::brightness::{Brightness, Scalar};
 use crate::camera::Camera;
 use crate::effects::{Effect, Effects};
 use crate::geometry::{in_range, shape_indices};
+use crate::misuse::check_picture;
 use crate::precision::Tier;
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::tiles::TILE;
 use crate::tuning::Class;
-use order::{curve, dealt};
-use place::{Statuses, place_tiles};
+pub use output::{Output, Pixels, Rows};
+use place::Statuses;
+use tiles::{MAX_DISPATCH_TILES, TILES_SIZE, TileWords};
 
 /// Pixels of a tile.
 const TILE_PIXELS: usize = (TILE * TILE) as usize;
-/// Tiles of a dispatch at the most: they lie in a uniform buffer.
-const MAX_DISPATCH_TILES: u32 = 16_384;
+/// Paths keep the index of a sample's result as a number, exact in `f32` up to this.
+const MAX_PATHS: u64 = 1 << 24;
+
+/// What is wanted of a renderer beside pixels.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Options {
+    /// Counts shadow and reflection rays, which a device does in kernels of its own.
+    pub count_rays: bool,
+    /// Reads the device's own clock, if it has one.
+    pub device_clock: bool,
+    /// About how long a pixel takes, in ms, where that is known: the first dispatch is sized by that.
+    pub pixel_ms: Option<f64>,
+}
+
+/// What the pixels of a picture say of themselves.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Rendered {
+    /// How many are not finite.
+    pub not_finite: u64,
+}
 
 /// Times of the work on the device so far.
 #[derive(Debug, Clone, Copy, Default)]
@@ -53,16 +76,33 @@ pub struct DeviceTimes {
     pub longest_dispatch: Duration,
     /// Number of dispatches.
     pub dispatches: u64,
-    /// Tiles rendered, or as many pixels of lists.
-    pub tiles: u64,
 }
 
-/// A scene on the device, ready to render rows.
+/// A scene on the device, ready to render [`Rows`] of its picture or lists of its [`Pixels`].
+///
+/// Which of them is part of the type. Only one for lists renders lists:
+///
+/// ```compile_fail,E0599
+/// fn first_pixel(mut renderer: trueray::gpu::GpuRenderer<trueray::gpu::Rows>) {
+///     let _ = renderer.pixels(&[[0, 0]], &mut [[0; 3]]);
+/// }
+/// ```
+///
+/// And only one for rows renders rows:
+///
+/// ```compile_fail,E0599
+/// fn first_rows(mut renderer: trueray::gpu::GpuRenderer<trueray::gpu::Pixels>) {
+///     let _ = renderer.rows(0, &mut [0; 3]);
+/// }
+/// ```
 #[derive(Debug)]
-pub struct GpuRenderer<'a> {
+pub struct GpuRenderer<'a, O = Rows> {
     gpu: &'a Gpu,
+    output: PhantomData<O>,
     cover: Cover,
-    width: u32,
+    /// Width and height of the picture.
+    size: (u32, u32),
+    tile_words: TileWords,
     /// Samples of a pixel.
     samples: u64,
     /// Tiles of the whole picture that any sphere may cover, or of as many pixels of a list; no band has more.
@@ -76,10 +116,10 @@ pub struct GpuRenderer<'a> {
     tiles_per_dispatch: u32,
     times: DeviceTimes,
     timestamps: Option<Timestamps>,
+    /// Pixels so far.
+    pixels: u64,
     /// Shadow and reflection rays so far, where they are counted.
     rays: [u64; 2],
-    /// Pixels rendered of lists.
-    listed: u64,
 }
 
 /// Everything that is needed to build the kernels once a tile asks for them.
@@ -129,11 +169,13 @@ const SEVERAL_PATHS: u64 = 12;
 /// Bytes of the shader's `Stage`.
 const STAGE_SIZE: u64 = 8;
 
+/// Bytes of a slot's ray counts in `shaders/film.wgsl`.
+const RAY_COUNT_SIZE: u64 = 8;
+
 impl<'a> GpuRenderer<'a> {
-    /// Prepares `scene` for `gpu`; the kernels are compiled when the first tile needs them.
+    /// Prepares rows of `scene` for `gpu`; the kernels are compiled when the first tile needs them.
     pub fn new(gpu: &'a Gpu, scene: &Scene, settings: &Settings, effects: &Effects, tier: Tier) -> Result<Self, Error> {
-        let kernel = gpu.kernel(tier)?;
-        Self::with_rounding(gpu, scene, settings, effects, kernel, kernel.rounding())
+        Self::with(gpu, scene, settings, effects, tier, &Options::default())
     }
 
     /// Likewise with a kernel of one's choice, and lists of spheres for one that rounds like this.
@@ -145,14 +187,46 @@ impl<'a> GpuRenderer<'a> {
         kernel: Kernel,
         rounding: Rounding,
     ) -> Result<Self, Error> {
+        Self::prepared(gpu, scene, settings, effects, (kernel, rounding), &Options::default())
+    }
+}
+
+impl<'a, O: Output> GpuRenderer<'a, O> {
+    /// Prepares `scene` for `gpu`, with more than the pixels where that is wanted.
+    pub fn with(
+        gpu: &'a Gpu,
+        scene: &Scene,
+        settings: &Settings,
+        effects: &Effects,
+        tier: Tier,
+        options: &Options,
+    ) -> Result<Self, Error> {
+        let kernel = gpu.kernel(tier)?;
+        Self::prepared(gpu, scene, settings, effects, (kernel, kernel.rounding()), options)
+    }
+
+    fn prepared(
+        gpu: &'a Gpu,
+        scene: &Scene,
+        settings: &Settings,
+        effects: &Effects,
+        (kernel, rounding): (Kernel, Rounding),
+        options: &Options,
+    ) -> Result<Self, Error> {
+        check_picture(scene, settings)?;
         let (scene, settings) = in_range(scene, settings);
         let (scene, settings) = (scene.as_ref(), &settings);
         let scalar = if kernel.is_double() { Scalar::Double } else { Scalar::Single };
         if let Some(why) = Brightness::of(scene, effects).problem(scene, scalar) {
-            return Err(Error::NoDevice(format!("{}: {why}", kernel.name())));
+            let help = "help: --precision double can, where the device has f64, and --device cpu";
+            return Err(Error::NoDevice(format!("{} cannot render this scene: {why}\n  {help}", kernel.name())));
         }
-        let tuning = &gpu.tuned.tuning;
-        let specialisation = Specialisation::new(scene, settings, effects, kernel, tuning, gpu.textures());
+        let tuning = &gpu.tuned().tuning;
+        let specialisation = Specialisation {
+            slots: O::SLOTS,
+            count_rays: options.count_rays,
+            ..Specialisation::new(scene, settings, effects, kernel, tuning, gpu.textures())
+        };
         let camera = Camera::new(scene, settings);
         let lists = |density| Acceleration::with_density(scene, &camera, specialisation.effects, rounding, density);
         let mut accel = lists(&tuning.density);
@@ -187,11 +261,16 @@ impl<'a> GpuRenderer<'a> {
             * (1 + u64::from(effects.depth));
         // A tree of rays doubles with each bounce where rays can wait.
         let tests_per_pixel = tests_per_pixel.saturating_mul(1 << effects.waiting(scene).min(32));
-        let first = tuning.first_dispatch_tests as u64 / tests_per_pixel.saturating_mul(TILE_PIXELS as u64);
+        let tiles = match options.pixel_ms {
+            None => tuning.first_dispatch_tests as u64 / tests_per_pixel.saturating_mul(TILE_PIXELS as u64),
+            Some(ms) => (tuning.dispatch_ms / (ms * TILE_PIXELS as f64).max(1e-9)) as u64,
+        };
         Ok(Self {
             gpu,
+            output: PhantomData,
             cover,
-            width: scene.width,
+            size: (scene.width, scene.height),
+            tile_words: TileWords::new(scene.width),
             samples,
             covered_tiles,
             background: settings.quantize.levels(scene.background),
@@ -202,11 +281,11 @@ impl<'a> GpuRenderer<'a> {
             },
             work: None,
             inputs: Inputs { resources, specialisation },
-            tiles_per_dispatch: first.clamp(1, u64::from(MAX_DISPATCH_TILES)) as u32,
+            tiles_per_dispatch: tiles.clamp(1, u64::from(MAX_DISPATCH_TILES)) as u32,
             times: DeviceTimes::default(),
-            timestamps: None,
+            timestamps: options.device_clock.then(|| Timestamps::new(gpu)).flatten(),
+            pixels: 0,
             rays: [0; 2],
-            listed: 0,
         })
     }
 
@@ -215,63 +294,26 @@ impl<'a> GpuRenderer<'a> {
         self.inputs.specialisation.variant()
     }
 
+    /// Width and height of the picture.
+    pub fn size(&self) -> (u32, u32) {
+        self.size
+    }
+
     /// Times of the work so far.
     pub fn times(&self) -> DeviceTimes {
         self.times
     }
 
-    /// Counts rays from now on; before the first row only.
-    pub fn count_rays(&mut self) {
-        self.inputs.specialisation.count_rays = true;
-    }
-
-    /// Reads the device's own clock from now on; returns whether it has one.
-    pub fn time_on_device(&mut self) -> bool {
-        self.timestamps = Timestamps::new(self.gpu);
+    /// Whether the device's own clock is read.
+    pub fn has_clock(&self) -> bool {
         self.timestamps.is_some()
     }
 
-    /// Primary, shadow and reflection rays so far; `None` where they are not counted.
+    /// Primary, shadow and reflection rays of all pixels so far; `None` where they are not counted. Those that need no ray, since no
+    /// sphere is near, count as if they had had theirs.
     pub fn rays(&self) -> Option<[u64; 3]> {
-        let pixels = match self.inputs.specialisation.slots {
-            Slots::Tiles => self.times.tiles * TILE_PIXELS as u64,
-            Slots::List => self.listed,
-        };
-        let primary = pixels * self.samples;
+        let primary = self.pixels * self.samples;
         self.inputs.specialisation.count_rays.then_some([primary, self.rays[0], self.rays[1]])
-    }
-
-    /// Renders rows `first` on (a multiple of [`TILE`]) into `rgb`, whole rows of 3 bytes a pixel; returns how many pixels
-    /// are not finite.
-    pub fn rows(&mut self, first: u32, rgb: &mut [u8]) -> Result<u64, Error> {
-        let row_bytes = self.width as usize * 3;
-        let count = (rgb.len() / row_bytes) as u32;
-        let background = self.background;
-        rgb.par_chunks_mut(row_bytes).for_each(|row| row.as_chunks_mut::<3>().0.fill(background));
-
-        let mut tiles = self.cover.covered(first, count);
-        tiles.sort_by_cached_key(|&tile| curve(tile));
-        let mut not_finite = 0;
-        let mut rest = tiles.as_slice();
-        while !rest.is_empty() {
-            let work = match self.work.take() {
-                Some(work) => work,
-                None => self.build()?,
-            };
-            let (now, later) = rest.split_at(rest.len().min(work.capacity.min(self.tiles_per_dispatch) as usize));
-            let now = &dealt(now, self.hands);
-            let took = self.dispatch(&work, now)?;
-            let statuses = self.read_back(&work, now, first, rgb)?;
-            if self.walks_at_once_instead(statuses, now.len()) {
-                continue;
-            }
-            not_finite += statuses.checked(self.gpu)?;
-            self.add_rays(&work, now.len() * TILE_PIXELS)?;
-            self.work = Some(work);
-            self.set_pace(now.len(), took);
-            rest = later;
-        }
-        Ok(not_finite)
     }
 
     /// Compiles the kernels and runs them once, since drivers finish compiling at the first dispatch.
@@ -298,23 +340,22 @@ impl<'a> GpuRenderer<'a> {
         let specialisation = &self.inputs.specialisation;
         let path = 2 * specialisation.path_size() * u64::from(specialisation.keeps_paths());
         let color = if self.samples > 1 { specialisation.color_size() } else { 4 };
-        let tile_bytes = TILE_PIXELS as u64 * self.samples * path.max(color);
+        let count = if specialisation.count_rays { RAY_COUNT_SIZE } else { 0 };
+        let slots = TILE_PIXELS as u64 * self.samples;
         let bytes =
-            (u64::from(self.gpu.tuned.tuning.path_mib) << 20).min(info.max_storage_binding).min(info.max_buffer);
+            (u64::from(self.gpu.tuned().tuning.path_mib) << 20).min(info.max_storage_binding).min(info.max_buffer);
         // Paths take a workgroup for so many of them.
-        let groups =
-            u64::from(info.max_workgroups) * u64::from(specialisation.workgroup) / (TILE_PIXELS as u64 * self.samples);
-        let limit = u64::from(MAX_DISPATCH_TILES.min(info.max_workgroups)).min(groups).min(bytes / tile_bytes);
+        let paths = (u64::from(info.max_workgroups) * u64::from(specialisation.workgroup)).min(MAX_PATHS);
+        let limit = u64::from(MAX_DISPATCH_TILES.min(info.max_workgroups))
+            .min(paths / slots)
+            .min(bytes / (slots * path.max(color).max(count)));
         self.covered_tiles.min(limit).max(1) as u32
     }
 
     /// Tiles, or pixels of a list, as the kernels read them.
     fn packed_places(&self, places: &[[u32; 2]]) -> Vec<u8> {
-        match self.inputs.specialisation.slots {
-            Slots::Tiles => {
-                let packed: Vec<u32> = places.iter().map(|[x, y]| (x / TILE) | (y / TILE) << 16).collect();
-                bytemuck::cast_slice(&packed).to_vec()
-            }
+        match O::SLOTS {
+            Slots::Tiles => self.tile_words.packed(places),
             Slots::List => {
                 let mut whole = places.to_vec();
                 whole.resize(places.len().next_multiple_of(TILE_PIXELS), [0, 0]);
@@ -324,8 +365,8 @@ impl<'a> GpuRenderer<'a> {
     }
 
     /// The workgroups over so many tiles, or pixels of a list.
-    fn workgroups(&self, places: usize) -> u32 {
-        match self.inputs.specialisation.slots {
+    fn workgroups(places: usize) -> u32 {
+        match O::SLOTS {
             Slots::Tiles => places as u32,
             Slots::List => places.div_ceil(TILE_PIXELS) as u32,
         }
@@ -341,7 +382,6 @@ impl<'a> GpuRenderer<'a> {
         }
         self.times.longest_dispatch = self.times.longest_dispatch.max(took);
         self.times.dispatches += 1;
-        self.times.tiles += u64::from(self.workgroups(tiles.len()));
         Ok(took)
     }
 
@@ -363,7 +403,7 @@ impl<'a> GpuRenderer<'a> {
                     Count::Found(offset) => pass.dispatch_workgroups_indirect(&work.workgroups, offset),
                 }
             };
-            let tiles = Count::Known(self.workgroups(tiles.len()));
+            let tiles = Count::Known(Self::workgroups(tiles.len()));
             let stages = &work.stages;
             run(&stages.see, &work.see_group, tiles);
             if let (Some(Bounce { begin, walk, shade }), Some(begin_group), Some(walk_groups)) =
@@ -392,37 +432,28 @@ impl<'a> GpuRenderer<'a> {
         self.gpu.wait()
     }
 
-    /// Puts the pixels of `tiles` into `rgb`, whose first row is `first`.
-    fn read_back(&mut self, work: &Work, tiles: &[[u32; 2]], first: u32, rgb: &mut [u8]) -> Result<Statuses, Error> {
-        let start = Instant::now();
-        let width = self.width;
-        let place = |pixels: &[u32]| place_tiles(pixels, tiles, first, width, rgb);
-        let statuses = work.pixels.read(self.gpu, tiles.len() * TILE_PIXELS, place)?;
-        self.times.read_back += start.elapsed();
-        Ok(statuses)
-    }
-
-    /// Whether the dispatch of so many places has to be repeated, since bounces or paths that share an invocation, and so the turns
-    /// of its loops, need more of them than it has: from then on each has its own.
-    fn walks_at_once_instead(&mut self, statuses: Statuses, places: usize) -> bool {
+    /// Whether the dispatch has to be repeated, since bounces or paths that share an invocation, and so the turns of its loops, need
+    /// more of them than it has: from then on each has its own.
+    fn walks_at_once_instead(&mut self, statuses: Statuses) -> bool {
         let specialisation = &mut self.inputs.specialisation;
         let repeats = specialisation.shares_turns() && statuses.may_be_cut(self.samples);
         if repeats {
             specialisation.walk = Walk::AtOnce;
             self.work = None;
-            self.times.tiles -= u64::from(self.workgroups(places));
         }
         repeats
     }
 
-    /// Adds up the ray counts of the last dispatch of so many pixels.
-    fn add_rays(&mut self, work: &Work, pixels: usize) -> Result<(), Error> {
+    /// Adds up the ray counts of those of so many places of the last dispatch that were asked for.
+    fn add_rays(&mut self, work: &Work, places: usize, is_asked: impl Fn(usize) -> bool) -> Result<(), Error> {
         if self.inputs.specialisation.count_rays {
+            let samples = self.samples as usize;
             let sum = |counts: &[u32]| {
-                counts.iter().fold([0, 0], |[s, r], count| [s + u64::from(count & 0xffff), r + u64::from(count >> 16)])
+                let places = counts.as_chunks::<2>().0.chunks(samples).enumerate();
+                let asked = places.filter(|(place, _)| is_asked(*place)).flat_map(|(_, counts)| counts);
+                asked.fold([0, 0], |[s, r], [shadow, reflection]| [s + u64::from(*shadow), r + u64::from(*reflection)])
             };
-            let values = pixels * self.samples as usize;
-            let [shadow, reflection] = work.ray_counts.read(self.gpu, values, sum)?;
+            let [shadow, reflection] = work.ray_counts.read(self.gpu, 2 * places * samples, sum)?;
             self.rays = [self.rays[0] + shadow, self.rays[1] + reflection];
         }
         Ok(())
@@ -430,7 +461,7 @@ impl<'a> GpuRenderer<'a> {
 
     /// Sizes the next dispatch by the last one's time, growing by a factor of 4 at most.
     fn set_pace(&mut self, tiles: usize, took: Duration) {
-        let target = self.gpu.tuned.tuning.dispatch_ms * 1e-3;
+        let target = self.gpu.tuned().tuning.dispatch_ms * 1e-3;
         let factor = (target / took.as_secs_f64().max(1e-9)).min(4.0);
         self.tiles_per_dispatch = ((tiles as f64 * factor) as u32).clamp(1, MAX_DISPATCH_TILES);
     }
@@ -453,13 +484,13 @@ impl Work {
         let pixel_count = u64::from(capacity) * TILE_PIXELS as u64;
         let slots = pixel_count * u64::from(specialisation.samples * specialisation.samples);
         let pixels = Readable::new(gpu, pixel_count);
-        let ray_counts = Readable::new(gpu, if specialisation.count_rays { slots } else { 1 });
+        let ray_counts = Readable::new(gpu, if specialisation.count_rays { slots * RAY_COUNT_SIZE / 4 } else { 2 });
         let paths = specialisation.path_size() * if specialisation.keeps_paths() { slots } else { 1 };
         let paths = [0, 1].map(|_| empty_texels(gpu, paths, 4));
         let in_turn = matches!(specialisation.walk, Walk::InTurn(_));
         let hits = empty_texels(gpu, if in_turn { 4 * slots } else { 4 }, 1);
         let tiles = match specialisation.slots {
-            Slots::Tiles => empty(u64::from(MAX_DISPATCH_TILES) * 4, wgpu::BufferUsages::UNIFORM | copied),
+            Slots::Tiles => empty(TILES_SIZE, wgpu::BufferUsages::UNIFORM | copied),
             Slots::List => empty(pixel_count * 8, storage | copied),
         };
         let stage = empty(STAGE_SIZE, storage | copied);

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::density::Density;
+use crate::misuse::Misuse;
 use crate::tiles::TILE;
 
 /// A picture that is reconstructed is kept as a whole: so many pixels at the most, and on each side.
@@ -13,29 +14,51 @@ pub const MAX_SIDE: u32 = 1 << 15;
 /// The sampled pixels of a picture, tile by tile, so that neighbours are rendered together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Samples {
-    /// Width and height of the picture.
-    pub size: (u32, u32),
-    /// Column and row of each, tiles in reading order, pixels of a tile likewise.
-    pub pixels: Vec<[u32; 2]>,
-    /// Each pixel has a sample within less than twice this in columns and in rows: a power of two.
-    pub reach: u32,
+    size: (u32, u32),
+    pixels: Vec<[u32; 2]>,
+    reach: u32,
 }
 
 impl Samples {
-    /// The pixels that `density` takes; the sides are at most [`MAX_SIDE`] and the pixels at most [`MAX_PIXELS`].
-    pub fn new(size: (u32, u32), density: &Density) -> Self {
+    /// The pixels that `density` takes.
+    ///
+    /// # Errors
+    ///
+    /// [`Misuse::Picture`] where the picture has an [`obstacle`](Self::obstacle).
+    pub fn new(size: (u32, u32), density: &Density) -> Result<Self, Misuse> {
+        if let Some(obstacle) = Self::obstacle(size) {
+            return Err(Misuse::Picture(obstacle));
+        }
         let pixels = in_rows(size, (0, size.1), |x, y| density.takes(x, y));
         let reach = reach(size, density.far, &pixels);
-        Self { size, pixels, reach }
+        Ok(Self { size, pixels, reach })
+    }
+
+    /// Width and height of the picture.
+    pub fn size(&self) -> (u32, u32) {
+        self.size
+    }
+
+    /// Column and row of each, tiles in reading order, pixels of a tile likewise.
+    pub fn pixels(&self) -> &[[u32; 2]] {
+        &self.pixels
+    }
+
+    /// Each pixel has a sample within less than twice this in columns and in rows: a power of two.
+    pub fn reach(&self) -> u32 {
+        self.reach
     }
 
     /// The pixels of rows `first` to `first + count` that `density` does not take.
     pub fn missing((width, height): (u32, u32), first: u32, count: u32, density: &Density) -> Vec<[u32; 2]> {
-        in_rows((width, height), (first, (first + count).min(height)), |x, y| !density.takes(x, y))
+        in_rows((width, height), (first, first.saturating_add(count).min(height)), |x, y| !density.takes(x, y))
     }
 
     /// Why a picture of this size cannot be reconstructed.
     pub fn obstacle((width, height): (u32, u32)) -> Option<String> {
+        if width == 0 || height == 0 {
+            return Some(format!("a picture of {width}x{height} pixels has none to sample"));
+        }
         let fits = width.max(height) <= MAX_SIDE && u64::from(width) * u64::from(height) <= MAX_PIXELS;
         (!fits).then(|| {
             format!(

@@ -25,14 +25,14 @@ fn scene(statements: &str) -> Result<Scene, Error> {
 fn render(gpu: &Gpu, tier: Tier, scene: &Scene, settings: &Settings) -> Result<(Vec<u8>, u64), Error> {
     let effects = Effects::of(scene, settings);
     let mut engine = Engine::new(Backend::Device(gpu, tier), scene, settings, &effects)?;
-    render_picture(&mut engine, scene)
+    render_picture(&mut engine)
 }
 
 /// The reference's picture.
 fn reference(scene: &Scene, settings: &Settings) -> Result<(Vec<u8>, u64), Error> {
     let effects = Effects::of(scene, settings);
     let mut engine = Engine::new(Backend::Reference, scene, settings, &effects)?;
-    render_picture(&mut engine, scene)
+    render_picture(&mut engine)
 }
 
 /// Adds one scene to the metrics: pixels that are not finite, and differences that the reference does not explain.

@@ -6,7 +6,7 @@ use serde::{Serialize, Serializer};
 
 use crate::cpu::{Judge, Reference};
 use crate::effects::Effects;
-use crate::engine::{Backend, Engine};
+use crate::engine::{Backend, Engine, Options};
 use crate::gpu::{self, Gpu};
 use crate::precision::Tier;
 use crate::scene::Scene;
@@ -74,7 +74,6 @@ pub(super) struct Runner<'a> {
     renderer: Renderer<'a>,
     /// The last picture, 3 bytes a pixel.
     pub(super) rgb: Vec<u8>,
-    has_clock: bool,
 }
 
 #[derive(Debug)]
@@ -102,17 +101,16 @@ impl<'a> Runner<'a> {
         settings: &Settings,
         effects: &Effects,
     ) -> Result<Self, gpu::Error> {
-        let mut has_clock = false;
         let renderer = match (contestant, gpu) {
             (Contestant::CpuSingle, _) => Renderer::Single(Box::new(Reference::new(scene, settings, effects))),
             (Contestant::Device(tier), Some(gpu)) => {
-                let mut engine = Engine::new(Backend::Device(gpu, tier), scene, settings, effects)?;
-                has_clock = engine.time_on_device();
-                Renderer::Engine(Box::new(engine))
+                let options = Options { device_clock: true, ..Options::default() };
+                let backend = Backend::Device(gpu, tier);
+                Renderer::Engine(Box::new(Engine::with(backend, scene, settings, effects, &options)?))
             }
             _ => Renderer::Engine(Box::new(Engine::new(Backend::Reference, scene, settings, effects)?)),
         };
-        Ok(Self { renderer, rgb: vec![0; scene.width as usize * scene.height as usize * 3], has_clock })
+        Ok(Self { renderer, rgb: vec![0; scene.width as usize * scene.height as usize * 3] })
     }
 
     /// Renders the whole picture once.
@@ -120,14 +118,14 @@ impl<'a> Runner<'a> {
         let start = Instant::now();
         match &mut self.renderer {
             Renderer::Single(reference) => {
-                let not_finite = reference.rows(0, &mut self.rgb).not_finite;
+                let not_finite = reference.rows(0, &mut self.rgb)?.not_finite;
                 Ok(Run { wall_ms: start.elapsed().as_secs_f64() * 1e3, device_ms: None, not_finite })
             }
             Renderer::Engine(engine) => {
                 let before = (engine.times().compile_ms, engine.on_device_ms());
                 let not_finite = engine.rows(0, &mut self.rgb)?;
                 let wall_ms = start.elapsed().as_secs_f64() * 1e3 - (engine.times().compile_ms - before.0);
-                let device_ms = self.has_clock.then(|| engine.on_device_ms() - before.1);
+                let device_ms = engine.on_device_ms().zip(before.1).map(|(after, before)| after - before);
                 Ok(Run { wall_ms, device_ms, not_finite })
             }
         }

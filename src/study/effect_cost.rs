@@ -49,13 +49,12 @@ pub fn effect_cost(
         (format!("auto, {effect} {}", if on { "off" } else { "on" }), Request::Changed(vec![(effect, !on)]))
     }));
 
-    let size = (scene.width, scene.height);
     let mut engines = Vec::new();
     let mut pictures = Vec::new();
     for (name, request) in requests {
         let effects = Effects::requested(scene, settings, &request);
         let mut engine = Engine::new(backend, scene, settings, &effects)?;
-        pictures.push(picture_hash(&mut engine, size)?);
+        pictures.push(picture_hash(&mut engine)?);
         let compile_ms = engine.times().compile_ms;
         let same_picture = pictures.last() == pictures.first();
         let variant =
@@ -65,7 +64,7 @@ pub fn effect_cost(
     for _ in 0..runs {
         for (engine, variant) in &mut engines {
             let before = engine.times().render_ms;
-            render_bands(engine, size, |_| Ok::<_, gpu::Error>(()))?;
+            render_bands(engine, |_| Ok::<_, gpu::Error>(()))?;
             variant.render.push(engine.times().render_ms - before);
         }
     }
@@ -78,9 +77,9 @@ pub fn effect_cost(
 }
 
 /// A fingerprint of the picture (FNV-1a), so that large ones need not be kept.
-fn picture_hash(engine: &mut Engine, size: (u32, u32)) -> Result<u64, gpu::Error> {
+fn picture_hash(engine: &mut Engine) -> Result<u64, gpu::Error> {
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-    render_bands(engine, size, |band| {
+    render_bands(engine, |band| {
         for &byte in band.rgb {
             hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
         }

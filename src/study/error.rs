@@ -93,6 +93,6 @@ impl Distance {
 
 /// The unclamped linear colours of all pixels in reading order.
 pub(super) fn linear_colors<T: Real>(reference: &Reference<T>, (width, height): (u32, u32)) -> Vec<DVec3> {
-    let row = |j| (0..width).map(move |i| reference.color(i, j));
+    let row = |j| (0..width).filter_map(move |i| reference.color(i, j));
     (0..height).into_par_iter().flat_map_iter(row).collect()
 }

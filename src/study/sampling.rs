@@ -6,7 +6,8 @@ use serde::Serialize;
 
 use super::error::{Distance, Error};
 use super::measure::{Plan, Subject};
-use crate::engine::{Backend, Engine, Filler, render_picture};
+use crate::engine::{Backend, Engine, Filler, Options, Pixels, render_picture};
+use crate::gpu;
 use crate::report::Sample;
 use crate::sampling::{Density, Fill, Fovea, Samples};
 
@@ -74,7 +75,7 @@ pub struct PartialSeries {
 
 /// A renderer of a point.
 struct Runner<'a> {
-    engine: Engine<'a>,
+    engine: Engine<'a, Pixels>,
     samples: Samples,
     colors: Vec<[u8; 3]>,
 }
@@ -84,7 +85,7 @@ impl Runner<'_> {
     fn run(&mut self, filler: &mut Filler, fill: Fill) -> Result<(Vec<u8>, [f64; 2]), Error> {
         let start = Instant::now();
         let compile = self.engine.times().compile_ms;
-        self.engine.pixels(&self.samples.pixels, &mut self.colors)?;
+        self.engine.pixels(self.samples.pixels(), &mut self.colors)?;
         let rays = start.elapsed().as_secs_f64() * 1e3 - (self.engine.times().compile_ms - compile);
         let filling = Instant::now();
         let rgb = filler.filled(&self.samples, &self.colors, fill)?;
@@ -107,18 +108,17 @@ pub(super) fn partial_series(subject: &Subject, plan: &Plan) -> Result<PartialSe
     }
 
     let mut full = Engine::new(backend, scene, settings, &effects)?;
-    let (truth, _) = render_picture(&mut full, scene)?;
+    let (truth, _) = render_picture(&mut full)?;
     let mut filler = Filler::fastest(backend)?;
     let foveated = |far| Density { fovea: Some(fovea), far };
     let mut runners = Vec::new();
     let mut round_ms = 0.0;
     for (manner, least) in [Manner::Sparse, Manner::Foveated].into_iter().flat_map(|m| PARTS.map(|least| (m, least))) {
         let density = if manner == Manner::Sparse { Density::sparse(least) } else { foveated(least) };
-        let samples = Samples::new(size, &density);
+        let samples = Samples::new(size, &density).map_err(gpu::Error::from)?;
         for fill in Fill::ALL {
-            let mut engine = Engine::new(backend, scene, settings, &effects)?;
-            engine.take_lists();
-            let mut runner = Runner { engine, samples: samples.clone(), colors: vec![[0; 3]; samples.pixels.len()] };
+            let engine = Engine::with(backend, scene, settings, &effects, &Options::default())?;
+            let mut runner = Runner { engine, samples: samples.clone(), colors: vec![[0; 3]; samples.pixels().len()] };
             // The first run compiles.
             runner.run(&mut filler, fill)?;
             let (rgb, [_, all_ms]) = runner.run(&mut filler, fill)?;
@@ -181,7 +181,7 @@ fn point(
         manner,
         least,
         fill,
-        pixels: samples.pixels.len() as u64,
+        pixels: samples.pixels().len() as u64,
         wall: Sample::default(),
         rays: Sample::default(),
         error: Distance::between(rgb, truth),

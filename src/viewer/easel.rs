@@ -16,7 +16,7 @@ use super::sketch::{Plan, Sketcher};
 use super::wishes::Wishes;
 use crate::cpu::seen_through;
 use crate::effects::Effects;
-use crate::engine::{Backend, Engine, Times};
+use crate::engine::{Backend, Engine, Options, Output, Pixels, Times};
 use crate::film::encode_png;
 use crate::gpu;
 use crate::gpu::Gpu;
@@ -111,18 +111,34 @@ struct Subject {
     took: f64,
 }
 
+/// What renders a picture.
+#[derive(Debug)]
+enum Source<'g> {
+    /// Row after row.
+    Rows(Engine<'g>),
+    /// First the pixels of a plan, which are shown at once, and then the others.
+    Sketch(Engine<'g, Pixels>, Arc<Plan>),
+}
+
+impl Source<'_> {
+    fn times(&self) -> Times {
+        match self {
+            Self::Rows(engine) => engine.times(),
+            Self::Sketch(engine, _) => engine.times(),
+        }
+    }
+}
+
 /// One picture on its way.
 #[derive(Debug)]
 struct Pass<'g> {
-    engine: Engine<'g>,
+    source: Source<'g>,
     step: u32,
     samples: u32,
     size: (u32, u32),
     /// The first one after a wish, which is shown at once and not given up for a newer wish.
     first: bool,
     next_row: u32,
-    /// What of it is shown at once, where it is not all.
-    plan: Option<Arc<Plan>>,
     /// Rows so far, where they are shown at once; all of the picture, as far as it is known, where a part is.
     rgb: Vec<u8>,
     took: Duration,
@@ -222,8 +238,8 @@ impl<'g> Easel<'g> {
     /// Does a little: some tens of milliseconds, unless kernels are compiled. Only a lost device is an error.
     pub(super) fn turn(&mut self, setting: &mut Setting) -> Result<(), gpu::Error> {
         match self.try_turn(setting) {
-            Err(gpu::Error::NoDevice(why)) => {
-                self.trouble = Some(why);
+            Err(error @ (gpu::Error::NoDevice(_) | gpu::Error::Misuse(_))) => {
+                self.trouble = Some(error.to_string());
                 (self.pass, self.measurement) = (None, None);
                 if let Some(subject) = &mut self.subject {
                     subject.to_come.clear();
@@ -299,7 +315,9 @@ impl<'g> Easel<'g> {
         }
         let pace = Pace { prepare: 0.0, sample: self.preview_sample, measured: true };
         let step = pace.step(size, FRAME).max(2);
-        let (mut engine, (width, height)) = coarse_engine(backend, &mut part, &settings, &effects, size, step)?;
+        let subject = (&settings, &effects);
+        let (mut engine, (width, height)): (Engine, _) =
+            coarse_engine(backend, &mut part, subject, size, step, &Options::default())?;
         let mut rgb = vec![0; width as usize * height as usize * 3];
         engine.rows(0, &mut rgb)?;
         self.preview_sample = engine.times().render_ms / (f64::from(width) * f64::from(height)).max(4096.0);
@@ -364,32 +382,32 @@ impl<'g> Easel<'g> {
         let start = Instant::now();
         let settings = Settings { samples, ..subject.settings };
         let backend = self.gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, subject.selection.tier));
-        let (mut engine, size) =
-            coarse_engine(backend, setting.scene, &settings, &subject.effects, subject.size, step)?;
-        let plan = subject.plan.take();
-        if plan.is_some() {
-            self.sketcher.ready(&mut engine);
-        }
+        let (scene, how, whole) = (&mut *setting.scene, (&settings, &subject.effects), subject.size);
+        let (source, size) = if let Some(plan) = subject.plan.take() {
+            let (engine, size) = coarse_engine(backend, scene, how, whole, step, &self.sketcher.options())?;
+            (Source::Sketch(engine, plan), size)
+        } else {
+            let (engine, size) = coarse_engine(backend, scene, how, whole, step, &Options::default())?;
+            (Source::Rows(engine), size)
+        };
         let took = start.elapsed() + Duration::from_secs_f64(subject.took / 1e3);
         let first = subject.took > 0.0;
         subject.took = 0.0;
         self.not_finite = 0;
-        self.pass = Some(Pass { engine, step, samples, size, first, next_row: 0, plan, rgb: Vec::new(), took });
+        self.pass = Some(Pass { source, step, samples, size, first, next_row: 0, rgb: Vec::new(), took });
         Ok(())
     }
 
     /// Renders a slice, and shows it.
     fn paint(&mut self, setting: &mut Setting) -> Result<(), gpu::Error> {
         let Some(mut pass) = self.pass.take() else { return Ok(()) };
-        if let Some(plan) = pass.plan.clone() {
-            return self.paint_sketch(pass, &plan, setting);
-        }
+        let rows = self.rows_at_once(&pass);
+        let Source::Rows(engine) = &mut pass.source else { return self.paint_sketch(pass, setting) };
         let start = Instant::now();
         let (width, height) = pass.size;
         let row_bytes = width as usize * 3;
-        let rows = self.rows_at_once(&pass);
         let mut rgb = vec![0; row_bytes * rows as usize];
-        self.not_finite += pass.engine.rows(pass.next_row, &mut rgb)?;
+        self.not_finite += engine.rows(pass.next_row, &mut rgb)?;
         let first_row = pass.next_row;
         pass.next_row += rows;
         pass.took += start.elapsed();
@@ -424,14 +442,14 @@ impl<'g> Easel<'g> {
 
     /// Learns from a picture that is complete, and tells the page.
     fn finish(&mut self, pass: &Pass, setting: &mut Setting) {
-        let times = pass.engine.times();
+        let times = pass.source.times();
         let (width, height) = pass.size;
         let samples = f64::from(width) * f64::from(height) * f64::from(pass.samples * pass.samples);
         let render = times.render_ms + times.read_back_ms;
         let frame = ms(pass.took);
-        let prepare = match pass.plan {
-            None => (frame - render - times.compile_ms).max(0.0),
-            Some(_) => self.pace.prepare,
+        let prepare = match pass.source {
+            Source::Rows(_) => (frame - render - times.compile_ms).max(0.0),
+            Source::Sketch(..) => self.pace.prepare,
         };
         self.pace.learn(prepare, render, samples);
         let Pass { step, samples, .. } = *pass;
@@ -502,8 +520,9 @@ impl<'g> Easel<'g> {
         let step = self.pace.step(subject.size, 3.0 * FRAME);
         let effects = measurement.variant(&subject.effects);
         let backend = self.gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, subject.selection.tier));
-        let (mut engine, (width, height)) =
-            coarse_engine(backend, setting.scene, &subject.settings, &effects, subject.size, step)?;
+        let how = (&subject.settings, &effects);
+        let (mut engine, (width, height)): (Engine, _) =
+            coarse_engine(backend, setting.scene, how, subject.size, step, &Options::default())?;
         let mut rgb = vec![0; width as usize * height as usize * 3];
         engine.rows(0, &mut rgb)?;
         let times = engine.times();
@@ -553,14 +572,14 @@ impl<'g> Easel<'g> {
 }
 
 /// A renderer whose pixels are every `step`-th column and row of the picture of `size`, with the size that it renders.
-fn coarse_engine<'g>(
+fn coarse_engine<'g, O: Output>(
     backend: Backend<'g>,
     scene: &mut Scene,
-    settings: &Settings,
-    effects: &Effects,
+    (settings, effects): (&Settings, &Effects),
     size: (u32, u32),
     step: u32,
-) -> Result<(Engine<'g>, (u32, u32)), gpu::Error> {
+    options: &Options,
+) -> Result<(Engine<'g, O>, (u32, u32)), gpu::Error> {
     with_size(scene, size, |scene| {
         let (width, height) = (size.0.div_ceil(step), size.1.div_ceil(step));
         let window = scene.window;
@@ -571,7 +590,7 @@ fn coarse_engine<'g>(
             scene.window.bottom = window.top - (window.top - window.bottom) * part(height, size.1);
         }
         (scene.width, scene.height) = (width, height);
-        let engine = Engine::new(backend, scene, settings, effects);
+        let engine = Engine::with(backend, scene, settings, effects, options);
         scene.window = window;
         Ok((engine?, (width, height)))
     })

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::attention::{Attention, Economy};
 use super::places::{Places, SLOTS, SampleColors};
-use crate::engine::{Backend, Engine, Filler};
+use crate::engine::{Backend, Filler, Options};
 use crate::gpu;
 use crate::sampling::{Density, Samples};
 
@@ -30,14 +30,14 @@ pub(super) struct Plan {
 
 impl Plan {
     fn new(filler: &Filler, size: (u32, u32), density: Density, slot: u32) -> Result<Self, gpu::Error> {
-        let samples = Samples::new(size, &density);
+        let samples = Samples::new(size, &density)?;
         let places = Places::new(size, &filler.nearest_samples(&samples)?);
         let order = reading_order(&samples);
         Ok(Self { density, samples, order, places, slot })
     }
 
     fn is_for(&self, size: (u32, u32), density: Density) -> bool {
-        self.samples.size == size && self.density == density
+        self.samples.size() == size && self.density == density
     }
 
     /// The message with the places of all samples.
@@ -51,14 +51,14 @@ impl Plan {
         for (color, &number) in colors.iter().zip(&self.order) {
             sorted[number as usize] = *color;
         }
-        SampleColors { size: self.samples.size, rgb: sorted.into_flattened() }.encode(self.slot)
+        SampleColors { size: self.samples.size(), rgb: sorted.into_flattened() }.encode(self.slot)
     }
 }
 
 /// The number of each sample in reading order.
 fn reading_order(samples: &Samples) -> Vec<u32> {
-    let mut starts = vec![0; samples.size.1 as usize + 1];
-    for [_, y] in &samples.pixels {
+    let mut starts = vec![0; samples.size().1 as usize + 1];
+    for [_, y] in samples.pixels() {
         starts[*y as usize + 1] += 1;
     }
     for y in 1..starts.len() {
@@ -70,7 +70,7 @@ fn reading_order(samples: &Samples) -> Vec<u32> {
         *next += 1;
         *next - 1
     };
-    samples.pixels.iter().map(number).collect()
+    samples.pixels().iter().map(number).collect()
 }
 
 /// A map, and whether the page knows it.
@@ -150,7 +150,7 @@ impl<'g> Sketcher<'g> {
             return Ok(Arc::clone(&kept.plan));
         }
         // Maps of another size are of no use any more.
-        self.kept.retain(|kept| kept.plan.samples.size == size);
+        self.kept.retain(|kept| kept.plan.samples.size() == size);
         if self.kept.len() >= slots(size)
             && let Some(oldest) = (0..self.kept.len()).min_by_key(|&index| self.kept[index].used)
         {
@@ -183,12 +183,9 @@ impl<'g> Sketcher<'g> {
         }
     }
 
-    /// Tells a new engine what is to come.
-    pub(super) fn ready(&self, engine: &mut Engine) {
-        engine.take_lists();
-        if self.measured {
-            engine.expect(self.sample);
-        }
+    /// What its engines can be told.
+    pub(super) fn options(&self) -> Options {
+        Options { pixel_ms: self.measured.then_some(self.sample), ..Options::default() }
     }
 
     /// Learns from a picture of so many samples that took so long, rays alone and all in all, in ms.

@@ -68,7 +68,7 @@ fn coverage(mut scene: Scene) -> f64 {
     let shapes = EffectSet::NONE.with(Effect::Ellipsoids, true);
     let nothing = Effects::requested(&scene, &settings, &Request::Exactly(shapes));
     let mut rgb = vec![0; 192 * 108 * 3];
-    Reference::<f64>::new(&scene, &settings, &nothing).rows(0, &mut rgb);
+    Reference::<f64>::new(&scene, &settings, &nothing).rows(0, &mut rgb).unwrap();
     let covered = rgb.chunks_exact(3).filter(|pixel| **pixel == [0, 0, 0]).count();
     covered as f64 / (192 * 108) as f64
 }

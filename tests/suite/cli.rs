@@ -376,3 +376,27 @@ fn a_closed_pipe_is_no_panic() {
         assert!(output.status.code().is_some_and(|code| code == 0 || code == 2), "{arguments}");
     }
 }
+
+/// Numbers beyond the range of a tier or of all of them: a reason, and no picture.
+#[test]
+fn scenes_beyond_the_range_of_numbers_are_refused() {
+    let bright = SCENE.replace("1 0 0 1 0 0 0 1\n", "1 0 0 1e200 0 0 0 1\n");
+    let too_bright = bright.replace("AMBIENT 1 1 1", "AMBIENT 1 1 1e150");
+    let tiny = format!("{SCENE}SPHERE t 0 0 -5 1e-200 1 1 1 1 1 1 0 0 0 1\n");
+    for (scene, reason) in [(&too_bright, "sphere 's'"), (&tiny, "sphere 't'")] {
+        let place = Place::new(scene);
+        for arguments in ["render scene.txt --device cpu", "scene.txt"] {
+            let output = place.run(arguments);
+            assert_exit(&output, 3, "the scene cannot be rendered");
+            assert!(String::from_utf8_lossy(&output.stderr).contains(reason));
+        }
+        assert_eq!(place.files(), ["scene.txt"]);
+    }
+    let place = Place::new(&bright);
+    assert_exit(&place.run("render scene.txt --device cpu -o c.ppm"), 0, "");
+    if gpu("scenes_beyond_the_range_of_numbers_are_refused").is_some() {
+        assert_exit(&place.run("render scene.txt --precision fast -o f.ppm"), 4, "fast cannot render this scene");
+        assert_exit(&place.run("render scene.txt --explain -o d.ppm"), 0, "brightness");
+        assert_eq!(place.files(), ["c.ppm", "d.ppm", "scene.txt"]);
+    }
+}

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use trueray::effects::{Effect, EffectSet, Effects, Request};
 use trueray::settings::Settings;
 
-use crate::support::{cpu_picture, scene_of};
+use crate::support::{cpu_picture, scaled, scene_of};
 
 /// A plain sphere line: name, centre, radius, and Ka Kd Ks Kr n.
 fn sphere(name: &str, center: [f64; 3], radius: f64, coefficients: &str) -> String {
@@ -68,7 +68,13 @@ fn table() -> Vec<(String, Effect, bool, &'static str)> {
         (sphere("s", [0.0, 0.0, -1.4], 0.4, "1 0 0 0 1"), Effect::Shells, true, "sphere 's' is not wholly beyond"),
         (sphere("s", [0.0, 0.0, 5.0], 0.4, "1 0 0 0 1"), Effect::Shells, true, "sphere 's' is not wholly beyond"),
         (lone("1 0 0 0 1"), Effect::Ellipsoids, false, "three equal semi-axes"),
-        (sphere("s", [0.0, 0.0, -5e20], 1e20, "1 0 0 0 1"), Effect::Ellipsoids, true, "size must be scaled out"),
+        (sphere("s", [0.0, 0.0, -5e20], 1e20, "1 0 0 0 1"), Effect::Ellipsoids, false, "three equal semi-axes"),
+        (
+            lone("1 0 0 0 1") + &sphere("dust", [0.0, 0.0, -5.0], 1e-12, "1 0 0 0 1"),
+            Effect::Ellipsoids,
+            true,
+            "sphere 'dust' is so small or large that its size must be scaled out",
+        ),
         ("SPHERE s 0 0 -5 1 -1 1 1 1 1 1 0 0 0 1".into(), Effect::Ellipsoids, false, "three equal semi-axes"),
         ("SPHERE s 0 0 -5 1 2 1 1 1 1 1 0 0 0 1".into(), Effect::Ellipsoids, true, "unequal semi-axes"),
     ]
@@ -159,10 +165,14 @@ proptest! {
         spheres in prop::collection::vec(any_sphere(), 1..4),
         lights in prop::collection::vec(any_light(), 0..3),
         exact in any::<bool>(),
+        exponent in prop_oneof![Just(0), -900..900_i32],
     ) {
         let mut scene = scene_of(&(spheres.concat() + &lights.concat() + "AMBIENT 0.2 0.3 0.4\nBACK 0.1 0.2 0.3"));
         (scene.width, scene.height) = (32, 24);
-        let settings = if exact { Settings::exact() } else { Settings::classic() };
+        let mut settings = if exact { Settings::exact() } else { Settings::classic() };
+        let factor = 2_f64.powi(exponent);
+        let scene = scaled(&scene, factor);
+        settings.secondary.reflection *= factor;
         let all = Effects::requested(&scene, &settings, &Request::Exactly(EffectSet::ALL));
         let auto = Effects::of(&scene, &settings);
         let [with, without] = [&all, &auto].map(|effects| cpu_picture::<f64>(&scene, &settings, effects));

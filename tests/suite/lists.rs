@@ -109,7 +109,7 @@ fn settings_of(seed: u64) -> Settings {
 fn cpu(scene: &Scene, settings: &Settings, rounding: Rounding) -> Vec<u8> {
     let mut rgb = vec![0; scene.width as usize * scene.height as usize * 3];
     let effects = Effects::of(scene, settings);
-    Reference::<f64>::with_rounding(scene, settings, &effects, rounding).rows(0, &mut rgb);
+    Reference::<f64>::with_rounding(scene, settings, &effects, rounding).rows(0, &mut rgb).unwrap();
     rgb
 }
 
@@ -141,7 +141,7 @@ fn the_device_leaves_out_nothing_at_any_tier() {
     let Some(_shared) = crate::support::gpu("the_device_leaves_out_nothing_at_any_tier") else { return };
     // Hundreds of pictures with few kinds of kernels.
     let mut gpu = Gpu::open(&Choice::Auto).unwrap().keeping_kernels();
-    let at_once = Tuning { in_place_below: 0.0, in_turn_from: 1e9, ..gpu.tuned.tuning };
+    let at_once = Tuning { in_place_below: 0.0, in_turn_from: 1e9, ..gpu.tuned().tuning };
     let in_place = Tuning { in_place_below: 1e9, ..at_once };
     let in_turn = Tuning { in_turn_from: 0.0, paths: 5, ..at_once };
     // Tiles as small as it helps, too.
@@ -150,11 +150,12 @@ fn the_device_leaves_out_nothing_at_any_tier() {
     for kernel in kernels {
         for seed in 0..210 {
             let (scene, settings) = (random_scene(seed), settings_of(seed));
-            gpu.set_tuning(at_once);
+            gpu.set_tuning(at_once).unwrap();
             let all = device(&gpu, kernel, &scene, &settings, Rounding::UNKNOWN);
             gpu.set_tuning(
                 [small(at_once), in_place, in_turn, at_once, small(in_place), small(in_turn)][seed as usize % 6],
-            );
+            )
+            .unwrap();
             let lists = device(&gpu, kernel, &scene, &settings, kernel.rounding());
             assert_eq!(first_difference(&all, &lists, &scene), None, "{kernel:?}, scene {seed}");
         }
@@ -219,22 +220,22 @@ fn mirrored(count: u32) -> Scene {
 fn a_walk_that_is_too_long_for_a_device_is_no_other_picture() {
     let Some(mut gpu) = crate::support::gpu("a_walk_that_is_too_long_for_a_device_is_no_other_picture") else { return };
     let scene = mirrored(80_000);
-    let own = gpu.tuned.tuning;
+    let own = gpu.tuned().tuning;
     for (in_place_below, in_turn_from) in [(0.0, 0.0), (0.0, 1e9), (1e9, 1e9)] {
-        gpu.set_tuning(Tuning { in_place_below, in_turn_from, ..own });
+        gpu.set_tuning(Tuning { in_place_below, in_turn_from, ..own }).unwrap();
         assert_whole_or_refused(&gpu, &scene);
     }
-    gpu.set_tuning(own);
+    gpu.set_tuning(own).unwrap();
 }
 
 /// The picture of `scene` with each way to walk: at once, in turn, in place.
 fn walked(gpu: &mut Gpu, scene: &Scene, settings: &Settings) -> [Vec<u8>; 3] {
-    let own = gpu.tuned.tuning;
+    let own = gpu.tuned().tuning;
     let pictures = [(0.0, 1e9), (0.0, 0.0), (1e9, 1e9)].map(|(in_place_below, in_turn_from)| {
-        gpu.set_tuning(Tuning { in_place_below, in_turn_from, ..own });
+        gpu.set_tuning(Tuning { in_place_below, in_turn_from, ..own }).unwrap();
         device(gpu, Kernel::Tier(Tier::Fast), scene, settings, Rounding::SINGLE)
     });
-    gpu.set_tuning(own);
+    gpu.set_tuning(own).unwrap();
     pictures
 }
 

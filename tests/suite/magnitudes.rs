@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use trueray::cpu::{Reference, seen_through};
-use trueray::effects::{Effects, Request};
+use trueray::effects::Effects;
 use trueray::gpu::{Gpu, GpuRenderer, Kernel};
 use trueray::limits;
 use trueray::precision::{self, Selection, Tier};
@@ -13,23 +13,34 @@ use trueray::view::View;
 
 use trueray::accel::Rounding;
 
-use crate::support::{cpu_picture, gpu, scene, scene_files, scene_of};
+use crate::support::{cpu_picture, gpu, scaled, scene, scene_files, scene_of};
+
+/// All tiers that the device has.
+fn kernels(gpu: &Gpu) -> Vec<Kernel> {
+    Tier::ALL.into_iter().filter_map(|tier| gpu.kernel(tier).ok()).collect()
+}
 
 /// The reference's picture, with lists for a renderer that rounds like this.
 fn cpu(scene: &Scene, settings: &Settings, rounding: Rounding) -> Vec<u8> {
     let mut rgb = vec![0; scene.width as usize * scene.height as usize * 3];
     let effects = Effects::of(scene, settings);
     let tally = Reference::<f64>::with_rounding(scene, settings, &effects, rounding).rows(0, &mut rgb);
-    assert_eq!(tally.not_finite, 0);
+    assert_eq!(tally.unwrap().not_finite, 0);
     rgb
 }
 
-/// The device's picture; none where it refuses.
+/// The device's picture; none where it refuses the scene or has not as many turns of a loop.
 fn device(gpu: &Gpu, kernel: Kernel, scene: &Scene, settings: &Settings, rounding: Rounding) -> Option<Vec<u8>> {
     let mut rgb = vec![0; scene.width as usize * scene.height as usize * 3];
     let effects = Effects::of(scene, settings);
     let mut renderer = GpuRenderer::with_rounding(gpu, scene, settings, &effects, kernel, rounding).ok()?;
-    assert_eq!(renderer.rows(0, &mut rgb).unwrap(), 0);
+    match renderer.rows(0, &mut rgb) {
+        Ok(rendered) => assert_eq!(rendered.not_finite, 0),
+        Err(error) => {
+            assert!(error.to_string().contains("turns of a loop"), "{error}");
+            return None;
+        }
+    }
     Some(rgb)
 }
 
@@ -62,20 +73,6 @@ fn usual_scene(random: &mut Random) -> Scene {
         scene.lights.push(Light { position: random.in_box(9.0), intensity: DVec3::splat(0.4) });
         scene.light_names.push("l");
     }
-    scene
-}
-
-/// `scene` in other units.
-fn scaled(scene: &Scene, factor: f64) -> Scene {
-    let mut scene = scene.clone();
-    let Window { near, left, right, bottom, top } = scene.window;
-    let [near, left, right, bottom, top] = [near, left, right, bottom, top].map(|x| x * factor);
-    scene.window = Window { near, left, right, bottom, top };
-    for sphere in &mut scene.spheres {
-        sphere.center *= factor;
-        sphere.scale *= factor;
-    }
-    scene.lights.iter_mut().for_each(|light| light.position *= factor);
     scene
 }
 
@@ -182,4 +179,249 @@ fn lists_hold_at_every_magnitude() {
         }
     }
     assert!(rendered > 500, "{rendered}");
+}
+
+#[test]
+fn lists_hold_at_every_magnitude_and_tier() {
+    let Some(_shared) = gpu("lists_hold_at_every_magnitude_and_tier") else { return };
+    let gpu = Gpu::open(&trueray::gpu::Choice::Gpu).unwrap().keeping_kernels();
+    for kernel in kernels(&gpu) {
+        let mut rendered = 0;
+        for seed in (1..768).step_by(7) {
+            let (scene, settings) = odd_scene(seed);
+            if limits::problem(&scene, &settings, &Effects::of(&scene, &settings)).is_some() {
+                continue;
+            }
+            let lists = device(&gpu, kernel, &scene, &settings, kernel.rounding());
+            // Walks past all spheres in every cell are long.
+            let all = device(&gpu, kernel, &scene, &settings, Rounding::UNKNOWN);
+            let (Some(lists), Some(all)) = (lists, all) else { continue };
+            rendered += 1;
+            assert_eq!(differing(&lists, &all), 0, "{kernel:?}, scene {seed}");
+            if kernel == Kernel::Tier(Tier::Double) {
+                assert_eq!(differing(&lists, &cpu(&scene, &settings, Rounding::DOUBLE)), 0, "scene {seed}");
+            }
+        }
+        assert!(rendered > 60, "{rendered}");
+    }
+}
+
+/// From far away a light shines from the same direction as from farther still.
+#[test]
+fn shadows_of_a_far_light_do_not_depend_on_its_distance() {
+    let shared = gpu("shadows_of_a_far_light_do_not_depend_on_its_distance");
+    let mut with_shadows = 0;
+    for seed in 0..8 {
+        let mut random = Random::new(15, seed);
+        let mut near = usual_scene(&mut random);
+        let direction = (random.unit() + DVec3::new(0.0, 1.0, 0.5)).normalize();
+        near.lights.truncate(1);
+        let at = |distance: f64| {
+            let mut scene = near.clone();
+            scene.lights[0].position = direction * distance;
+            scene
+        };
+        let settings = Settings { max_depth: 2, ..Settings::exact() };
+        let expected = cpu(&at(1e7), &settings, Rounding::UNKNOWN);
+        let unlit = {
+            let none = Effects::requested(&near, &settings, &"-shadows".parse().unwrap());
+            cpu_picture::<f64>(&at(1e7), &settings, &none).0
+        };
+        if differing(&expected, unlit.rgb()) <= 5 {
+            continue;
+        }
+        with_shadows += 1;
+        for exponent in (8..24).chain([60, 100, 150, 200, 300]) {
+            let scene = at(10_f64.powi(exponent));
+            let effects = Effects::of(&scene, &settings);
+            // A thousandth of a pixel's width from a shadow's edge, at 10⁸, is seen by none or one of the pixels.
+            let difference = differing(&cpu(&scene, &settings, Rounding::DOUBLE), &expected);
+            assert!(difference <= 1, "scene {seed}, 1e{exponent}: {difference}");
+            let Some(gpu) = &shared else { continue };
+            let demand = precision::Demand::of(&scene, &effects);
+            for kernel in kernels(gpu) {
+                let Kernel::Tier(tier) = kernel else { continue };
+                if demand.light_distance.value > tier.promise().light_distance {
+                    assert!(exponent > 13, "{tier}");
+                    continue;
+                }
+                let picture = device(gpu, kernel, &scene, &settings, kernel.rounding()).unwrap();
+                let difference = differing(&picture, &expected);
+                assert!(
+                    difference <= if tier == Tier::Double { 1 } else { 4 },
+                    "{tier}, scene {seed}, 1e{exponent}: {difference}"
+                );
+            }
+        }
+        // In classic the least distance of a blocker is a part of the way to the light: beyond all spheres.
+        let settings = Settings { max_depth: 2, ..Settings::classic() };
+        let expected = cpu(&at(1e9), &settings, Rounding::DOUBLE);
+        for exponent in [12, 17, 30, 300] {
+            assert!(differing(&cpu(&at(10_f64.powi(exponent)), &settings, Rounding::DOUBLE), &expected) <= 1);
+        }
+    }
+    assert!(with_shadows > 3, "{with_shadows}");
+}
+
+/// A file's numbers times a power of two are the same picture, byte for byte, and so are the effects that `auto` leaves out.
+#[test]
+fn no_picture_depends_on_its_units() {
+    for file in scene_files(&["basic", "effects", "hard", "refraction", "show"]) {
+        let mut scene = scene(&file);
+        (scene.width, scene.height) = (40, 30);
+        for base in [Settings::classic(), Settings::exact()] {
+            let expected = cpu(&scene, &base, Rounding::DOUBLE);
+            for exponent in [-900, -480, -100, -30, 30, 100, 480, 900] {
+                let factor = 2_f64.powi(exponent);
+                let Secondary { shadow, reflection } = base.secondary;
+                let settings = Settings { secondary: Secondary { shadow, reflection: reflection * factor }, ..base };
+                let scene = scaled(&scene, factor);
+                assert_eq!(limits::problem(&scene, &settings, &Effects::of(&scene, &settings)), None);
+                let difference = differing(&cpu(&scene, &settings, Rounding::DOUBLE), &expected);
+                assert_eq!(difference, 0, "{} times 2^{exponent}", file.display());
+            }
+        }
+    }
+}
+
+/// Spheres wholly beyond the image plane look the same through any window of the same shape.
+#[test]
+fn no_picture_depends_on_the_size_of_its_window() {
+    let shared = gpu("no_picture_depends_on_the_size_of_its_window");
+    let mut random = Random::new(16, 0);
+    let mut scene = usual_scene(&mut random);
+    scene.spheres.retain(|sphere| sphere.center.z < -3.0);
+    for settings in [Settings::classic(), Settings::exact()] {
+        let expected = cpu(&scene, &settings, Rounding::DOUBLE);
+        let kernels = shared.as_ref().map(|gpu| kernels(gpu)).unwrap_or_default();
+        let on_device = |kernel: Kernel, scene: &Scene| {
+            device(shared.as_ref().unwrap(), kernel, scene, &settings, kernel.rounding()).unwrap()
+        };
+        let pictures: Vec<_> = kernels.iter().map(|&kernel| on_device(kernel, &scene)).collect();
+        for exponent in [-800, -300, -100, -66, -40, -20, -5, 1] {
+            let window = scaled(&scene, 2_f64.powi(exponent)).window;
+            let small = Scene { window, ..scene.clone() };
+            assert_eq!(differing(&cpu(&small, &settings, Rounding::DOUBLE), &expected), 0, "2^{exponent}");
+            for (&kernel, picture) in kernels.iter().zip(&pictures) {
+                assert_eq!(differing(&on_device(kernel, &small), picture), 0, "{kernel:?}, 2^{exponent}");
+            }
+            let [seen, small] = [&scene, &small].map(|scene| seen_through(scene, &settings, 16, 12));
+            if let (Some(seen), Some(small)) = (seen, small) {
+                assert_eq!((seen.sphere, seen.position), (small.sphere, small.position));
+                assert_eq!(seen.t, small.t * 2_f64.powi(exponent));
+            } else {
+                assert_eq!(seen, small);
+            }
+        }
+        // Aslant: so near to the eye that most rays are all but parallel to the image plane.
+        for near in [1e-3, 1e-8, 1e-20, 1e-40] {
+            let window = Window { near, left: -1.0, right: 0.7, bottom: -0.6, top: 1.0 };
+            let aslant = Scene { window, ..scene.clone() };
+            let lists = cpu(&aslant, &settings, Rounding::DOUBLE);
+            assert_eq!(differing(&cpu(&aslant, &settings, Rounding::UNKNOWN), &lists), 0, "{near}");
+            for &kernel in &kernels {
+                let limit = usize::from(kernel != Kernel::Tier(Tier::Double));
+                assert!(differing(&on_device(kernel, &aslant), &lists) <= limit, "{kernel:?}, {near}");
+            }
+        }
+    }
+}
+
+/// Inside a sphere that shows nothing but its ambient light and itself: 1 + k + k² + … + k^depth times that.
+fn inside_a_mirror(kr: f64) -> Scene {
+    let mut scene = scene_of(&format!("SPHERE hall 0 0 0 5 5 5 1 1 1 0.5 0 0 {kr} 1\nAMBIENT 1 1 1"));
+    (scene.width, scene.height) = (8, 8);
+    scene
+}
+
+#[test]
+fn negative_mirrors_alternate_between_white_and_black() {
+    let shared = gpu("negative_mirrors_alternate_between_white_and_black");
+    for kr in [-2.0, -6e5, -6e25] {
+        let scene = inside_a_mirror(kr);
+        for max_depth in 0..10 {
+            let settings = Settings { max_depth, ..Settings::exact() };
+            let effects = Effects::of(&scene, &settings);
+            let sum: f64 = (0..=max_depth).map(|bounce| kr.powi(bounce as i32)).sum();
+            let level = (255.0 * (0.5 * sum).clamp(0.0, 1.0) + 0.5) as u8;
+            let (expected, not_finite) = cpu_picture::<f64>(&scene, &settings, &effects);
+            assert_eq!(not_finite, 0);
+            assert!(expected.rgb().iter().all(|&l| l == level), "{kr}, depth {max_depth}: {level}");
+            let Some(gpu) = &shared else { continue };
+            let selection = Selection::of(&scene, &effects, precision::Request(None), gpu.ladder());
+            let kernel = gpu.kernel(selection.tier).unwrap();
+            let picture = device(gpu, kernel, &scene, &settings, kernel.rounding()).unwrap();
+            assert!(picture == expected.rgb(), "{kr}, depth {max_depth}, {}", selection.tier);
+        }
+    }
+}
+
+/// What is too bright for `f32` takes `double`, and `fast` refuses it rather than show something else.
+#[test]
+fn colours_beyond_single_precision_take_double() {
+    let shared = gpu("colours_beyond_single_precision_take_double");
+    let mirrors = "SPHERE a -1 0 -5 1 1 1 1 1 1 0.5 0.5 0.5 -6e25 9\nSPHERE b 1 0 -5 1 1 1 1 1 1 0.5 0.5 0.5 -6e25 9\n\
+                   SPHERE c 0 1.8 -6 1 1 1 1 0.5 0.2 0.5 0.5 0.5 0 9\nLIGHT l 3 3 3 1 1 1\nAMBIENT 1 1 1";
+    let ball = "SPHERE a 0 0 -5 1 1 1 0.5 0.5 0.5 0.5 0.5 0.5 0 9\n";
+    let cases = [
+        (mirrors.to_owned(), "sphere 'a'"),
+        (format!("{ball}LIGHT l 5 5 0 1e39 0.2 0.2\nLIGHT m -5 5 0 -1e39 0.2 0.2\n"), "sphere 'a'"),
+        (format!("{ball}AMBIENT 0.1 1e39 0.1"), "AMBIENT or BACK"),
+        (format!("{ball}AMBIENT 1 1 1\nBACK 0 0 1e39"), "AMBIENT or BACK"),
+        (ball.replace("0.5 0.5 0.5 0 9", "1e200 0.5 0.5 0 9") + "AMBIENT 1 1 1e100", "sphere 'a'"),
+    ];
+    for (text, source) in cases {
+        let scene = scene_of(&text);
+        let settings = Settings::classic();
+        let effects = Effects::of(&scene, &settings);
+        assert_eq!(limits::problem(&scene, &settings, &effects), None);
+        let (expected, not_finite) = cpu_picture::<f64>(&scene, &settings, &effects);
+        assert_eq!(not_finite, 0);
+        let selection = Selection::of(&scene, &effects, precision::Request(None), &Tier::ALL);
+        assert_eq!((selection.tier, selection.covered), (Tier::Double, true), "{text}");
+        assert!(selection.reason.contains("brightness"), "{}", selection.reason);
+        let Some(gpu) = &shared else { continue };
+        for kernel in kernels(gpu) {
+            let renderer = GpuRenderer::with_rounding(gpu, &scene, &settings, &effects, kernel, kernel.rounding());
+            if kernel == Kernel::Tier(Tier::Double) {
+                let picture = device(gpu, kernel, &scene, &settings, kernel.rounding()).unwrap();
+                assert_eq!(differing(&picture, expected.rgb()), 0, "{text}");
+            } else {
+                let why = renderer.unwrap_err().to_string();
+                assert!(why.contains(source) && why.contains("f32") && why.contains("--precision double"), "{why}");
+            }
+        }
+    }
+}
+
+/// Where even `f64` leaves its range there is a reason instead of a picture.
+#[test]
+fn what_f64_cannot_hold_is_refused() {
+    let ball = "SPHERE a 0 0 -5 1 1 1 0.5 0.5 0.5 0.5 0.5 0.5 0 9\n";
+    let cases = [
+        (format!("{ball}SPHERE tiny 0 0 -5 1e-130 1 1 1 1 1 1 0 0 0 1"), "sphere 'tiny'"),
+        (format!("{ball}SPHERE huge 0 -1e130 0 1e130 1e130 1e130 1 1 1 1 0 0 0 1"), "sphere 'a'"),
+        (ball.replace("0.5 0.5 0.5 0 9", "1e200 0.5 0.5 0 9") + "AMBIENT 1 1 1e101", "beyond what f64 adds up"),
+        (
+            ball.replace("0.5 0.5 0.5 0 9", "0.5 0.5 0.5 -1e110 9") + "SPHERE b 1 0 -6 1 1 1 1 1 1 1 1 1 1 1",
+            "sphere 'a'",
+        ),
+    ];
+    for (text, reason) in cases {
+        let scene = scene_of(&text);
+        let settings = Settings::classic();
+        let why = limits::problem(&scene, &settings, &Effects::of(&scene, &settings)).unwrap_or_default();
+        assert!(why.contains(reason), "{text}: {why}");
+    }
+    let scene = scene_of(ball);
+    let problem = |scene: &Scene, settings: &Settings| limits::problem(scene, settings, &Effects::of(scene, settings));
+    let with_near = |near: f64| Scene { window: Window { near, ..scene.window }, ..scene.clone() };
+    assert!(problem(&with_near(1e-60), &Settings::classic()).unwrap().contains("NEAR"));
+    assert!(problem(&with_near(1e300), &Settings::classic()).unwrap().contains("NEAR"));
+    let view = View::new(DVec3::new(1e308, 0.0, 0.0), None, DVec3::Y).unwrap();
+    let mut far = scene.clone();
+    far.spheres[0].center.x = -1e308;
+    let why = problem(&far, &Settings { view, ..Settings::classic() }).unwrap();
+    assert!(why.contains("sphere 'a' is so far from the eye"), "{why}");
+    assert_eq!(problem(&scene, &Settings::classic()), None);
 }

@@ -207,7 +207,7 @@ fn each_depth_adds_what_it_must() {
             let expected = if max_depth == 0 { KA } else { KA + KT * inner(max_depth - 1, BACK) };
             let effects = Effects::of(&scene, &settings);
             assert_eq!(effects.depth, max_depth);
-            let color = Reference::<f64>::new(&scene, &settings, &effects).color(4, 4);
+            let color = Reference::<f64>::new(&scene, &settings, &effects).color(4, 4).unwrap();
             assert!((color.x - expected).abs() < 1e-14, "depth {max_depth}: {} instead of {expected}", color.x);
             for (name, picture) in pictures(&scene, &settings, "each_depth_adds_what_it_must") {
                 let level = settings.quantize.levels(DVec3::splat(expected))[0];

@@ -79,10 +79,10 @@ fn a_moving_picture_has_samples_of_render_and_the_rest_follows() {
             if let Some(fovea) = density.fovea {
                 assert_eq!(fovea.center, [0.25 * f64::from(WIDTH), 0.75 * f64::from(HEIGHT)]);
             }
-            let samples = Samples::new((WIDTH, HEIGHT), &density);
-            assert_eq!(words["sampled"]["pixels"], samples.pixels.len());
+            let samples = Samples::new((WIDTH, HEIGHT), &density).unwrap();
+            assert_eq!(words["sampled"]["pixels"], samples.pixels().len());
             let at = |rgb: &[u8], index: usize| [rgb[3 * index], rgb[3 * index + 1], rgb[3 * index + 2]];
-            for &[x, y] in &samples.pixels {
+            for &[x, y] in samples.pixels() {
                 let index = (y * WIDTH + x) as usize;
                 assert_eq!(page.ways[index], [0, 0]);
                 assert_eq!(at(&page.rgb, index), at(&expected, index), "({x}, {y}), on the device: {on_device}");

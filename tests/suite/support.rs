@@ -10,7 +10,7 @@ use trueray::engine::{Backend, Engine, render_picture};
 use trueray::film::Picture;
 use trueray::gpu::{Choice, Gpu};
 use trueray::precision::Tier;
-use trueray::scene::{Scene, parse};
+use trueray::scene::{Scene, Window, parse};
 use trueray::settings::Settings;
 
 /// The one device of all tests, or `None`, said aloud, where there is none and none is required.
@@ -68,6 +68,20 @@ pub(crate) fn scene_of(statements: &str) -> Scene {
     parsed.scene.clone().unwrap_or_else(|| panic!("{}", parsed.report(false)))
 }
 
+/// `scene` in other units.
+pub(crate) fn scaled(scene: &Scene, factor: f64) -> Scene {
+    let mut scene = scene.clone();
+    let Window { near, left, right, bottom, top } = scene.window;
+    let [near, left, right, bottom, top] = [near, left, right, bottom, top].map(|x| x * factor);
+    scene.window = Window { near, left, right, bottom, top };
+    for sphere in &mut scene.spheres {
+        sphere.center *= factor;
+        sphere.scale *= factor;
+    }
+    scene.lights.iter_mut().for_each(|light| light.position *= factor);
+    scene
+}
+
 /// The GPU's picture and its number of pixels that are not finite.
 pub(crate) fn gpu_picture(
     gpu: &Gpu,
@@ -77,14 +91,14 @@ pub(crate) fn gpu_picture(
     effects: &Effects,
 ) -> (Picture, u64) {
     let mut engine = Engine::new(Backend::Device(gpu, tier), scene, settings, effects).unwrap();
-    let (rgb, not_finite) = render_picture(&mut engine, scene).unwrap();
+    let (rgb, not_finite) = render_picture(&mut engine).unwrap();
     (picture(scene, rgb), not_finite)
 }
 
 /// The CPU's picture in the scalar `T` and its number of pixels that are not finite.
 pub(crate) fn cpu_picture<T: Real>(scene: &Scene, settings: &Settings, effects: &Effects) -> (Picture, u64) {
     let mut rgb = vec![0; scene.width as usize * scene.height as usize * 3];
-    let tally = Reference::<T>::new(scene, settings, effects).rows(0, &mut rgb);
+    let tally = Reference::<T>::new(scene, settings, effects).rows(0, &mut rgb).unwrap();
     (picture(scene, rgb), tally.not_finite)
 }
 

@@ -59,20 +59,20 @@ fn cases() -> Vec<(String, Scene, Settings)> {
 #[test]
 fn no_tuning_changes_a_byte() {
     let Some(mut gpu) = gpu("no_tuning_changes_a_byte") else { return };
-    let own = gpu.tuned.tuning;
+    let own = gpu.tuned().tuning;
     for tier in Tier::ALL {
         if gpu.kernel(tier).is_err() {
             continue;
         }
         for (name, scene, settings) in cases() {
-            gpu.set_tuning(Tuning::of(Class::Software));
+            gpu.set_tuning(Tuning::of(Class::Software)).unwrap();
             let expected = render(&gpu, tier, &scene, &settings);
             for mut tuning in tunings() {
                 tuning.workgroup = tuning.workgroup.min(gpu.info.max_invocations);
-                gpu.set_tuning(tuning);
+                gpu.set_tuning(tuning).unwrap();
                 let picture = render(&gpu, tier, &scene, &settings);
                 let changed = picture.iter().zip(&expected).filter(|(a, b)| a != b).count();
-                gpu.set_tuning(own);
+                gpu.set_tuning(own).unwrap();
                 assert_eq!(changed, 0, "{name} at {tier} with {tuning:?}");
             }
         }

@@ -227,7 +227,7 @@ pub(crate) fn rendered(gpu: Option<&Gpu>, scene: &Scene, wishes: &Wishes) -> Vec
         let relative = settings.view.relative(&scene);
         Backend::Device(gpu, Selection::of(&relative, &effects, wishes.precision, gpu.ladder()).tier)
     });
-    render_picture(&mut Engine::new(backend, &scene, &settings, &effects).unwrap(), &scene).unwrap().0
+    render_picture(&mut Engine::new(backend, &scene, &settings, &effects).unwrap()).unwrap().0
 }
 
 #[test]
@@ -469,6 +469,27 @@ fn the_eye_moves_as_the_page_asks() {
         pose = pose.orbited(0.3, 0.3).turned(0.2, 0.4).zoomed(0.5, range).zoomed(f64::NAN, range);
         pose = pose.flown(f64::INFINITY, 0.0, 0.0, range).flown(1e300, 0.0, 0.0, range);
         assert!(pose.view().is_ok() && pose.eye.is_finite());
+    }
+}
+
+/// NEAR beyond what a page could reach, and spheres behind that: a range all the same, and an eye that moves.
+#[test]
+fn worlds_of_any_size_can_be_flown_through() {
+    for size in [1e-300, 1e-20, 1e15, 1e16, 1e60, 1e300] {
+        let text = format!(
+            "NEAR {size}\nLEFT -{size}\nRIGHT {size}\nBOTTOM -{size}\nTOP {size}\nRES 8 8\n\
+             SPHERE a 0 0 -{} {size} {size} {size} 1 0 0 1 0 0 0 1",
+            4.0 * size
+        );
+        let parsed = parse("test", text.as_bytes());
+        let range = Range::of(parsed.scene.as_ref().unwrap());
+        assert!(range.distance > 0.0 && range.distance.is_finite(), "{size}");
+        let pose = Pose::of_file(range);
+        if (1e-100..1e90).contains(&size) {
+            for moved in [pose.orbited(0.3, 0.0), pose.flown(0.0, 0.0, 0.1, range), pose.zoomed(0.5, range)] {
+                assert!(moved.eye != pose.eye && moved.view().is_ok(), "{size}: {moved:?}");
+            }
+        }
     }
 }
 

@@ -41,19 +41,19 @@ impl Statuses {
     }
 }
 
-/// Copies pixels in tile order to their places in rows; returns what their statuses say.
+/// Copies pixels in tile order to their places in rows, of which `first` is the first; returns what their statuses say.
 pub(super) fn place_tiles(pixels: &[u32], tiles: &[[u32; 2]], first: u32, width: u32, rgb: &mut [u8]) -> Statuses {
     let row_bytes = width as usize * 3;
-    let tile_row_bytes = row_bytes * TILE as usize;
     let mut by_row: Vec<_> = tiles.iter().zip(pixels.chunks(TILE_PIXELS)).collect();
     by_row.sort_by_key(|(tile, _)| tile[1]);
-    let place_row = |(tile_row, band): (usize, &mut [u8])| {
-        let y = first + tile_row as u32 * TILE;
+    // The rows in `band` of the tiles that begin in row `y`, of which the first `above` lie before it.
+    let place_row = |y: u32, above: u32, band: &mut [u8]| {
         let start = by_row.partition_point(|(tile, _)| tile[1] < y);
         let mut statuses = Statuses::default();
         for (tile, pixels) in by_row[start..].iter().take_while(|(tile, _)| tile[1] == y) {
             let across = TILE.min(width - tile[0]) as usize;
-            for (row, pixels) in band.chunks_mut(row_bytes).zip(pixels.chunks(TILE as usize)) {
+            let lines = pixels.chunks(TILE as usize).skip(above as usize);
+            for (row, pixels) in band.chunks_mut(row_bytes).zip(lines) {
                 let row = &mut row[tile[0] as usize * 3..][..across * 3];
                 for (target, pixel) in row.as_chunks_mut::<3>().0.iter_mut().zip(pixels) {
                     let [r, g, b, status] = pixel.to_le_bytes();
@@ -64,5 +64,12 @@ pub(super) fn place_tiles(pixels: &[u32], tiles: &[[u32; 2]], first: u32, width:
         }
         statuses
     };
-    rgb.par_chunks_mut(tile_row_bytes).enumerate().map(place_row).reduce(Statuses::default, Statuses::plus)
+    let above = first % TILE;
+    let first_rows = (first.next_multiple_of(TILE) - first) as usize;
+    let (rows_of_first, rest) = rgb.split_at_mut(rgb.len().min(first_rows * row_bytes));
+    let of_first = place_row(first - above, above, rows_of_first);
+    let bands = rest.par_chunks_mut(row_bytes * TILE as usize).enumerate();
+    let next = first.next_multiple_of(TILE);
+    let of_rest = bands.map(|(index, band)| place_row(next + index as u32 * TILE, 0, band));
+    of_first.plus(of_rest.reduce(Statuses::default, Statuses::plus))
 }

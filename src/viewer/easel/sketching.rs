@@ -5,9 +5,9 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::{Easel, FRAME, Pass, Setting, Shown, ms, with_size};
+use super::{Easel, FRAME, Pass, Setting, Shown, Source, ms, with_size};
 use crate::effects::Effects;
-use crate::engine::{Backend, Engine, Times};
+use crate::engine::{Backend, Engine, Pixels, Times};
 use crate::gpu;
 use crate::sampling::{Density, Samples};
 use crate::scene::Scene;
@@ -24,30 +24,26 @@ pub(super) struct Sampled {
 
 impl Sampled {
     fn of(plan: &Plan) -> Self {
-        Self { pixels: plan.samples.pixels.len(), density: plan.density }
+        Self { pixels: plan.samples.pixels().len(), density: plan.density }
     }
 }
 
 impl<'g> Easel<'g> {
     /// Renders a slice of a picture that began with a part of its pixels: that part first, then the missing pixels of some rows.
-    pub(super) fn paint_sketch(
-        &mut self,
-        mut pass: Pass<'g>,
-        plan: &Arc<Plan>,
-        setting: &mut Setting,
-    ) -> Result<(), gpu::Error> {
+    pub(super) fn paint_sketch(&mut self, mut pass: Pass<'g>, setting: &mut Setting) -> Result<(), gpu::Error> {
         if pass.first {
-            self.show_sketch(&mut pass, plan, setting)?;
+            self.show_sketch(&mut pass, setting)?;
             self.pass = Some(pass);
             return Ok(());
         }
+        let rows = self.rows_at_once(&pass);
+        let Source::Sketch(engine, plan) = &mut pass.source else { return Ok(()) };
         let start = Instant::now();
         let (width, height) = pass.size;
-        let rows = self.rows_at_once(&pass);
         let (first_row, row_bytes) = (pass.next_row, width as usize * 3);
         let missing = Samples::missing(pass.size, first_row, rows, &plan.density);
         let mut colors = vec![[0; 3]; missing.len()];
-        self.not_finite += pass.engine.pixels(&missing, &mut colors)?;
+        self.not_finite += engine.pixels(&missing, &mut colors)?;
         place(&missing, &colors, width, &mut pass.rgb);
         pass.next_row += rows;
         pass.took += start.elapsed();
@@ -64,18 +60,19 @@ impl<'g> Easel<'g> {
     }
 
     /// Renders the part that is shown at once.
-    fn show_sketch(&mut self, pass: &mut Pass, plan: &Arc<Plan>, setting: &mut Setting) -> Result<(), gpu::Error> {
+    fn show_sketch(&mut self, pass: &mut Pass, setting: &mut Setting) -> Result<(), gpu::Error> {
+        let Source::Sketch(engine, plan) = &mut pass.source else { return Ok(()) };
         let start = Instant::now();
-        let samples = &plan.samples.pixels;
+        let samples = plan.samples.pixels();
         let mut colors = vec![[0; 3]; samples.len()];
-        self.not_finite += pass.engine.pixels(samples, &mut colors)?;
+        self.not_finite += engine.pixels(samples, &mut colors)?;
         self.show_samples(plan, &colors);
         pass.rgb = vec![0; pass.size.0 as usize * pass.size.1 as usize * 3];
         place(samples, &colors, pass.size.0, &mut pass.rgb);
         pass.took += start.elapsed();
         pass.first = false;
 
-        let times = pass.engine.times();
+        let times = engine.times();
         let (rays, all) = (times.render_ms + times.read_back_ms, ms(pass.took) - times.compile_ms);
         // A large scene is shown by a part of it while the eye moves: its own pictures say nothing of those.
         if setting.scene.spheres.len() <= super::MANY_SPHERES {
@@ -101,9 +98,10 @@ impl<'g> Easel<'g> {
             return Ok(false);
         };
         let start = Instant::now();
-        let mut engine = with_size(part, size, |part| Engine::new(backend, part, settings, effects))?;
-        self.sketcher.ready(&mut engine);
-        let samples = &plan.samples.pixels;
+        let options = self.sketcher.options();
+        let mut engine: Engine<Pixels> =
+            with_size(part, size, |part| Engine::with(backend, part, settings, effects, &options))?;
+        let samples = plan.samples.pixels();
         let mut colors = vec![[0; 3]; samples.len()];
         engine.pixels(samples, &mut colors)?;
         self.show_samples(&plan, &colors);

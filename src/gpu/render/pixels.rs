@@ -2,30 +2,23 @@
 
 use std::time::Instant;
 
+use super::output::Pixels;
 use super::place::Statuses;
-use super::{GpuRenderer, MAX_DISPATCH_TILES, TILE_PIXELS, Work};
+use super::{GpuRenderer, Rendered, TILE_PIXELS, Work};
 use crate::gpu::error::Error;
-use crate::gpu::shader::Slots;
+use crate::misuse::check_pixels;
 
-impl GpuRenderer<'_> {
-    /// Renders lists of pixels from now on, and no rows; before the first picture only.
-    pub fn take_lists(&mut self) {
-        self.inputs.specialisation.slots = Slots::List;
-    }
-
-    /// A pixel is expected to take so long, in ms: the first dispatch is sized by that.
-    pub fn expect(&mut self, pixel_ms: f64) {
-        let tiles = self.gpu.tuned.tuning.dispatch_ms / (pixel_ms * TILE_PIXELS as f64).max(1e-9);
-        self.tiles_per_dispatch = (tiles as u32).clamp(1, MAX_DISPATCH_TILES);
-    }
-
-    /// Renders the pixels in these columns and rows, after [`GpuRenderer::take_lists`]; each has the value that it has in the
-    /// full picture. Returns how many are not finite.
-    pub fn pixels(&mut self, pixels: &[[u32; 2]], colors: &mut [[u8; 3]]) -> Result<u64, Error> {
+impl GpuRenderer<'_, Pixels> {
+    /// Renders the pixels in these columns and rows; each has the value that it has in the full picture.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Misuse`] where a pixel is not of the picture, or there is not one colour for each.
+    pub fn pixels(&mut self, pixels: &[[u32; 2]], colors: &mut [[u8; 3]]) -> Result<Rendered, Error> {
+        check_pixels(self.size, pixels, colors.len())?;
         colors.fill(self.background);
         let covered: Vec<usize> = (0..pixels.len()).filter(|&index| self.cover.has(pixels[index])).collect();
         let list: Vec<[u32; 2]> = covered.iter().map(|&index| pixels[index]).collect();
-        self.listed += list.len() as u64;
         // Buffers for this list and no more: the device fills them with zeros first.
         let needed = list.len().div_ceil(TILE_PIXELS) as u64;
         if self.work.is_none() || needed > self.covered_tiles {
@@ -33,7 +26,7 @@ impl GpuRenderer<'_> {
             self.work = None;
         }
 
-        let mut not_finite = 0;
+        let mut rendered = Rendered::default();
         let mut start = 0;
         while start < list.len() {
             let work = match self.work.take() {
@@ -44,16 +37,17 @@ impl GpuRenderer<'_> {
             let end = list.len().min(start + most);
             let took = self.dispatch(&work, &list[start..end])?;
             let statuses = self.read_list(&work, &covered[start..end], colors)?;
-            if self.walks_at_once_instead(statuses, end - start) {
+            if self.walks_at_once_instead(statuses) {
                 continue;
             }
-            not_finite += statuses.checked(self.gpu)?;
-            self.add_rays(&work, end - start)?;
+            rendered.not_finite += statuses.checked(self.gpu)?;
+            self.add_rays(&work, end - start, |_| true)?;
             self.work = Some(work);
             self.set_pace((end - start).div_ceil(TILE_PIXELS), took);
             start = end;
         }
-        Ok(not_finite)
+        self.pixels += pixels.len() as u64;
+        Ok(rendered)
     }
 
     /// Puts the pixels of the last dispatch to their places in `colors`.

@@ -1,0 +1,64 @@
+//! Which primary rays may just touch a sphere: where rounding could decide whether they meet, exact arithmetic does.
+
+use std::cmp::Ordering;
+
+use rayon::iter::ParallelIterator;
+
+use super::intersect::Approach;
+use super::real::Real;
+use super::scene::Shape;
+use super::shade::max;
+use crate::camera::Camera;
+use crate::exact::TangentMargin;
+use crate::geometry::Ellipsoid;
+
+/// How far rounding can move discriminants of primary rays.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Tangents {
+    margin: TangentMargin,
+    /// The greatest margin of any sphere.
+    widest: f64,
+}
+
+impl Tangents {
+    /// Of the `ellipsoids` around an eye that was at `eye`, seen through `camera` with a scalar of this unit roundoff.
+    pub(crate) fn of(
+        ellipsoids: impl ParallelIterator<Item = Ellipsoid>,
+        eye: f64,
+        camera: &Camera,
+        unit: f64,
+    ) -> Self {
+        let margin = TangentMargin::new(eye, camera, unit);
+        Self { margin, widest: margin.widest(ellipsoids) }
+    }
+
+    /// The approach with a discriminant whose sign is right: `touches` says which it is where rounding could have decided.
+    #[inline]
+    pub(crate) fn decided<T: Real>(
+        &self,
+        at: Approach<T>,
+        shape: &Shape<T>,
+        touches: impl FnOnce() -> Ordering,
+    ) -> Approach<T> {
+        // Ordered comparison: a NaN is never a hit, and needs no exact arithmetic.
+        if at.discriminant.abs() <= T::from_f64(self.widest) { self.exactly(at, shape, touches) } else { at }
+    }
+
+    #[cold]
+    fn exactly<T: Real>(&self, at: Approach<T>, shape: &Shape<T>, touches: impl FnOnce() -> Ordering) -> Approach<T> {
+        let [a, discriminant, perpendicular, distance] =
+            [at.a, at.discriminant, at.perpendicular.dot(at.perpendicular).sqrt(), at.origin.dot(at.origin).sqrt()]
+                .map(T::to_f64);
+        let stretch = shape.inv_scale.to_f64().max_element();
+        if discriminant.abs() > self.margin.of(perpendicular, distance, stretch, a.sqrt()) {
+            return at;
+        }
+        let discriminant = match touches() {
+            Ordering::Less => -T::ONE,
+            Ordering::Equal => T::ZERO,
+            // Where that is not positive the chord is shorter than the scalar can say.
+            Ordering::Greater => max(at.discriminant, T::ZERO),
+        };
+        Approach { discriminant, ..at }
+    }
+}

@@ -1,0 +1,82 @@
+//! Rows of a picture from the device, by the tiles that they lie in.
+
+use std::time::Instant;
+
+use rayon::prelude::*;
+
+use super::order::{curve, dealt};
+use super::output::Rows;
+use super::place::{Statuses, place_tiles};
+use super::{GpuRenderer, Rendered, TILE_PIXELS, Work};
+use crate::gpu::error::Error;
+use crate::misuse::check_rows;
+use crate::tiles::TILE;
+
+impl GpuRenderer<'_, Rows> {
+    /// Renders rows `first` on into `rgb`, whole rows of 3 bytes a pixel.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Misuse`] where these are no rows of the picture.
+    pub fn rows(&mut self, first: u32, rgb: &mut [u8]) -> Result<Rendered, Error> {
+        let count = check_rows(self.size, first, rgb.len())?;
+        let row_bytes = self.size.0 as usize * 3;
+        let most = self.tile_words.most_rows();
+        let mut rendered = Rendered::default();
+        for (start, rgb) in (first..first + count).step_by(most as usize).zip(rgb.chunks_mut(row_bytes * most as usize))
+        {
+            rendered.not_finite += self.band(start, rgb)?.not_finite;
+        }
+        self.pixels += u64::from(self.size.0) * u64::from(count);
+        Ok(rendered)
+    }
+
+    /// Renders rows whose tiles fit into words together.
+    fn band(&mut self, first: u32, rgb: &mut [u8]) -> Result<Rendered, Error> {
+        let row_bytes = self.size.0 as usize * 3;
+        let count = (rgb.len() / row_bytes) as u32;
+        let background = self.background;
+        rgb.par_chunks_mut(row_bytes).for_each(|row| row.as_chunks_mut::<3>().0.fill(background));
+
+        let above = first % TILE;
+        let mut tiles = self.cover.covered(first - above, above + count);
+        tiles.sort_by_cached_key(|&tile| curve(tile));
+        let mut rendered = Rendered::default();
+        let mut rest = tiles.as_slice();
+        while !rest.is_empty() {
+            let work = match self.work.take() {
+                Some(work) => work,
+                None => self.build()?,
+            };
+            let (now, later) = rest.split_at(rest.len().min(work.capacity.min(self.tiles_per_dispatch) as usize));
+            let now = &dealt(now, self.hands);
+            let took = self.dispatch(&work, now)?;
+            let statuses = self.read_tiles(&work, now, first, rgb)?;
+            if self.walks_at_once_instead(statuses) {
+                continue;
+            }
+            rendered.not_finite += statuses.checked(self.gpu)?;
+            let end = [self.size.0, first + count];
+            self.add_rays(&work, now.len() * TILE_PIXELS, |place| {
+                let ([left, top], place) = (now[place / TILE_PIXELS], (place % TILE_PIXELS) as u32);
+                let [x, y] = [left + place % TILE, top + place / TILE];
+                // A tile may reach beyond the picture, or into rows that are not asked for.
+                x < end[0] && (first..end[1]).contains(&y)
+            })?;
+            self.work = Some(work);
+            self.set_pace(now.len(), took);
+            rest = later;
+        }
+        Ok(rendered)
+    }
+
+    /// Puts the pixels of `tiles` into `rgb`, whose first row is `first`.
+    fn read_tiles(&mut self, work: &Work, tiles: &[[u32; 2]], first: u32, rgb: &mut [u8]) -> Result<Statuses, Error> {
+        let start = Instant::now();
+        let width = self.size.0;
+        let place = |pixels: &[u32]| place_tiles(pixels, tiles, first, width, rgb);
+        let statuses = work.pixels.read(self.gpu, tiles.len() * TILE_PIXELS, place)?;
+        self.times.read_back += start.elapsed();
+        Ok(statuses)
+    }
+}

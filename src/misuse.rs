@@ -1,0 +1,108 @@
+//! Mistakes of whoever asks a renderer for something: nothing is rendered then.
+
+use std::fmt;
+
+use crate::scene::{MAX_RESOLUTION, Scene};
+use crate::settings::Settings;
+
+/// What is asked for makes no sense.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Misuse {
+    /// The picture, its number of samples or its depth is out of range.
+    Picture(String),
+    /// Rows that are not of the picture, or bytes that are no whole rows.
+    Rows {
+        /// The first row.
+        first: u32,
+        /// Room for its rows.
+        bytes: usize,
+        /// Width and height of the picture.
+        size: (u32, u32),
+    },
+    /// A pixel that is not of the picture.
+    Pixel {
+        /// Its column and row.
+        pixel: [u32; 2],
+        /// Width and height of the picture.
+        size: (u32, u32),
+    },
+    /// Not one colour for each pixel.
+    Colors {
+        /// Number of pixels.
+        pixels: usize,
+        /// Number of colours.
+        colors: usize,
+    },
+    /// Samples of a picture of another size.
+    Samples {
+        /// Width and height of the picture that they are of.
+        of: (u32, u32),
+        /// Width and height of the picture.
+        size: (u32, u32),
+    },
+    /// A number of a tuning that is out of its limits.
+    Tuning(String),
+    /// A batch of rays whose parts do not fit together.
+    Batch(String),
+}
+
+impl fmt::Display for Misuse {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Picture(why) | Self::Tuning(why) | Self::Batch(why) => f.write_str(why),
+            Self::Rows { first, bytes, size: (width, height) } => {
+                write!(f, "{bytes} bytes from row {first} on are no rows of a picture of {width}x{height} pixels")
+            }
+            Self::Pixel { pixel: [x, y], size: (width, height) } => {
+                write!(f, "the pixel in column {x} and row {y} is not of a picture of {width}x{height} pixels")
+            }
+            Self::Colors { pixels, colors } => write!(f, "{colors} colours for {pixels} pixels"),
+            Self::Samples { of: (of_width, of_height), size: (width, height) } => {
+                write!(f, "samples of a picture of {of_width}x{of_height} pixels for one of {width}x{height}")
+            }
+        }
+    }
+}
+
+impl std::error::Error for Misuse {}
+
+/// Whether there is such a picture of `scene`.
+pub(crate) fn check_picture(scene: &Scene, settings: &Settings) -> Result<(), Misuse> {
+    let numbers = [
+        ("width", scene.width, 1..=MAX_RESOLUTION),
+        ("height", scene.height, 1..=MAX_RESOLUTION),
+        ("samples", settings.samples, 1..=Settings::MAX_SAMPLES),
+        ("max_depth", settings.max_depth, 0..=Settings::MAX_DEPTH),
+    ];
+    match numbers.into_iter().find(|(_, number, range)| !range.contains(number)) {
+        None => Ok(()),
+        Some((name, number, range)) => {
+            Err(Misuse::Picture(format!("{name} is {number}, not from {} to {}", range.start(), range.end())))
+        }
+    }
+}
+
+/// Whether the picture has rows from `first` on for so many bytes, 3 a pixel; their number.
+pub(crate) fn check_rows(size: (u32, u32), first: u32, bytes: usize) -> Result<u32, Misuse> {
+    let row_bytes = size.0 as usize * 3;
+    let rest = size.1.saturating_sub(first) as usize;
+    if row_bytes > 0 && bytes.is_multiple_of(row_bytes) && bytes / row_bytes <= rest {
+        Ok((bytes / row_bytes) as u32)
+    } else {
+        Err(Misuse::Rows { first, bytes, size })
+    }
+}
+
+/// Whether all pixels are of the picture, and there is a colour for each.
+pub(crate) fn check_pixels(size: (u32, u32), pixels: &[[u32; 2]], colors: usize) -> Result<(), Misuse> {
+    check_colors(pixels.len(), colors)?;
+    match pixels.iter().find(|[x, y]| *x >= size.0 || *y >= size.1) {
+        None => Ok(()),
+        Some(&pixel) => Err(Misuse::Pixel { pixel, size }),
+    }
+}
+
+/// Whether there is a colour for each pixel.
+pub(crate) fn check_colors(pixels: usize, colors: usize) -> Result<(), Misuse> {
+    if pixels == colors { Ok(()) } else { Err(Misuse::Colors { pixels, colors }) }
+}
