@@ -74,7 +74,7 @@ impl View {
     /// The unclamped colours of these pixels.
     fn colors(&self, pixels: &Pixels) -> Vec<DVec3> {
         let reference = Reference::<f64>::new(&self.scene, &self.settings, &Effects::of(&self.scene, &self.settings));
-        pixels.iter().map(|&(x, y)| reference.color(x, y)).collect()
+        pixels.iter().map(|&(x, y)| reference.color(x, y).unwrap()).collect()
     }
 
     fn effects(&self) -> EffectSet {

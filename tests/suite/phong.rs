@@ -226,9 +226,9 @@ fn check(test: &str, cases: &[Case], ways: Ways) {
             let (picture, _) = cpu_picture::<f64>(&scene, settings, &effects);
             judge.levels("reference", picture.pixel(PIXEL.0, PIXEL.1), DOUBLE);
             let mut on = |gpu: &mut Gpu, tiers: &[Tier], ways: Ways, name: &str| {
-                let own = gpu.tuned.tuning;
+                let own = gpu.tuned().tuning;
                 for (way, tuning) in ways.tunings(own) {
-                    gpu.set_tuning(tuning);
+                    gpu.set_tuning(tuning).unwrap();
                     for &tier in tiers.iter().filter(|&&tier| gpu.kernel(tier).is_ok()) {
                         let (picture, _) = gpu_picture(gpu, tier, &scene, settings, &effects);
                         let tolerance = if tier == Tier::Double && gpu.info.f64 { DOUBLE } else { SINGLE };
@@ -236,7 +236,7 @@ fn check(test: &str, cases: &[Case], ways: Ways) {
                         judge.levels(&format!("{name}, {tier}, {way}"), pixel, tolerance);
                     }
                 }
-                gpu.set_tuning(own);
+                gpu.set_tuning(own).unwrap();
             };
             if let Some(gpu) = &mut device {
                 on(gpu, &Tier::ALL, ways, "device");
@@ -253,7 +253,7 @@ fn check(test: &str, cases: &[Case], ways: Ways) {
 }
 
 fn color_of<T: Real>(scene: &Scene, settings: &Settings) -> DVec3 {
-    Reference::<T>::new(scene, settings, &Effects::of(scene, settings)).color(PIXEL.0, PIXEL.1)
+    Reference::<T>::new(scene, settings, &Effects::of(scene, settings)).color(PIXEL.0, PIXEL.1).unwrap()
 }
 
 /// Compares what renderers show with what a case expects.
@@ -803,6 +803,7 @@ fn the_conventions_are_those_of_the_specification() {
     assert_eq!((classic.specular, classic.max_depth), (Specular::Phong, 3));
     let exact = Settings::exact();
     assert_eq!((exact.sampling, exact.quantize), (Sampling::Center, Quantize::Round));
-    assert_eq!(exact.secondary, Secondary::SkipSelf);
+    assert_eq!(classic.secondary, Secondary { shadow: 1e-3, reflection: 1e-3 });
+    assert_eq!(exact.secondary, Secondary { shadow: 0.0, reflection: 0.0 });
     assert_eq!((exact.specular, exact.max_depth), (Specular::Phong, 3));
 }
