@@ -13,6 +13,7 @@ mod cli;
 mod compare;
 mod drivers;
 mod effects;
+mod explain;
 mod export;
 mod film;
 mod keys;
