@@ -44,6 +44,7 @@ fn echo_layout() {
     echo_bits(params.max_depth);
     echo_bits(params.zero);
     echo_bits(params.grid_entries);
+    echo(real(params.tangent_margin));
     for (var i = 0u; i < 2u; i++) {
         echo3(shape_of(i).center_radius.xyz);
         echo(shape_of(i).center_radius.w);

@@ -14,6 +14,9 @@ override ELLIPSOIDS: bool = true;
 // The specular term is (N.H)^n instead of (R.V)^n.
 override BLINN: bool = false;
 
+// Pixels say where rounding could decide whether a primary ray touches a sphere.
+override TANGENTS: bool = false;
+
 // Side of the grid of samples in each pixel.
 override SAMPLES: u32 = 1u;
 

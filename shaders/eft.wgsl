@@ -72,6 +72,11 @@ fn pair_difference3(a: Pair3, b: Pair3) -> Pair3 {
     return fast_two_sum3(sum.hi, sum.lo + (a.lo - b.lo));
 }
 
+fn pair_sum3(a: Pair3, b: Pair3) -> Pair3 {
+    let sum = two_sum3(a.hi, b.hi);
+    return fast_two_sum3(sum.hi, sum.lo + (a.lo + b.lo));
+}
+
 fn pair_product3(a: Pair3, b: Pair3) -> Pair3 {
     let product = two_product3(a.hi, b.hi);
     return Pair3(product.hi, product.lo + (a.hi * b.lo + a.lo * b.hi));
@@ -85,6 +90,26 @@ fn pair_difference(a: Pair, b: Pair) -> Pair {
 fn pair_product(a: Pair, b: Pair) -> Pair {
     let product = two_product(a.hi, b.hi);
     return Pair(product.hi, product.lo + (a.hi * b.lo + a.lo * b.hi));
+}
+
+fn pair_scaled3(a: Pair3, factor: Pair) -> Pair3 {
+    return pair_product3(a, Pair3(vec3<f32>(factor.hi), vec3<f32>(factor.lo)));
+}
+
+// One step of Newton's method after the rounded root.
+fn pair_square_root(x: Pair) -> Pair {
+    let root = sqrt(x.hi);
+    let square = two_product(root, root);
+    let low = ((x.hi - square.hi) - square.lo + x.lo) / (root + root);
+    return Pair(root, select(low, 0.0, root == 0.0));
+}
+
+// Likewise after the rounded quotient.
+fn pair_quotient(a: Pair, b: Pair) -> Pair {
+    let high = a.hi / b.hi;
+    let product = two_product(high, b.hi);
+    let low = ((a.hi - product.hi) - product.lo + (a.lo - high * b.lo)) / b.hi;
+    return fast_two_sum(high, low);
 }
 
 // a . b as if in twice the precision (Ogita, Rump, Oishi, "Accurate sum and dot product", 2005, algorithm Dot2).

@@ -3,8 +3,19 @@
 // Red, green, blue in the low bytes, status in the high one.
 @group(0) @binding(7) var<storage, read_write> pixels: array<u32>;
 
+// What the primary ray says of itself, for whoever finishes its path.
+fn keep_status(slot: u32) {
+    if TANGENTS {
+        pixels[slot] = select(0u, STATUS_TANGENT << 24u, is_tangent);
+    }
+}
+
 fn finish(slot: u32, color: vec3r) {
-    pixels[slot] = packed_pixel(color) | select(0u, STATUS_CUT << 24u, is_cut);
+    var status = select(0u, STATUS_CUT << 24u, is_cut);
+    if TANGENTS {
+        status |= pixels[slot] & (STATUS_TANGENT << 24u);
+    }
+    pixels[slot] = packed_pixel(color) | status;
 }
 
 fn see_pixel(pixel: vec2<u32>, slot: u32) {

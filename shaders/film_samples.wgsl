@@ -1,11 +1,21 @@
 // Several samples a pixel: their results are colours, of which the pixel is the mean.
 
-@group(0) @binding(7) var<storage, read_write> colors: array<vec3r>;
+// With the status, as a number.
+@group(0) @binding(7) var<storage, read_write> colors: array<vec4r>;
+
+// What the primary ray says of itself, for whoever finishes its path.
+fn keep_status(slot: u32) {
+    if TANGENTS {
+        colors[slot].w = select(real(0.0), real(STATUS_TANGENT), is_tangent);
+    }
+}
 
 fn finish(slot: u32, color: vec3r) {
-    // No colour at all, as the status of the pixel will say.
-    var zero = real(0.0);
-    colors[slot] = select(color, vec3r(real(1.0) / zero), is_cut);
+    var status = select(real(0.0), real(STATUS_CUT), is_cut);
+    if TANGENTS {
+        status += colors[slot].w;
+    }
+    colors[slot] = vec4r(color, status);
 }
 
 // Row by row in the pixel.
@@ -21,6 +31,7 @@ fn see_pixel(pixel: vec2<u32>, first_slot: u32) {
     // The first that was left out stands for all: it has no path that could finish it later.
     if sample < SAMPLES * SAMPLES {
         is_cut = true;
+        keep_status(first_slot + sample);
         finish(first_slot + sample, vec3r());
     }
 }

@@ -53,6 +53,12 @@ fn approach(ray: Ray, body: Body) -> Approach {
     return Approach(origin, direction, a, b, perpendicular, discriminant);
 }
 
+// Whether rounding could decide whether the line of a primary ray touches the sphere: src/exact.rs has the margin.
+fn may_touch(ray: Ray, body: Body) -> bool {
+    let radius = body.shape.center_radius.w;
+    return abs(approach(ray, body).discriminant) < real(params.tangent_margin) * (radius * radius);
+}
+
 // Both intersections of the line.
 struct Roots {
     // Whether there are any. Ordered comparisons decide: a NaN is never a hit.

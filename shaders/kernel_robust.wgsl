@@ -70,9 +70,9 @@ fn body_of(sphere: u32) -> Body {
 // The ray in the sphere's object space.
 struct Approach {
     // c'.
-    direction: vec3r,
+    direction: Pair3,
     // S' x c'.
-    moment: vec3r,
+    moment: Pair3,
     // c'.c', -S'.c' and S'.S' - r^2.
     a: Pair,
     b: Pair,
@@ -100,7 +100,14 @@ fn approach(ray: Ray, body: Body) -> Approach {
     let far = pair_difference(pair_product(a, radius_squared), pair_dot(moment, moment));
     let near = pair_difference(pair_product(minus_b, minus_b), pair_product(a, c));
     let is_near = abs(c.hi) < 0.5 * radius_squared.hi;
-    return Approach(direction.hi, moment.hi, a, Pair(-minus_b.hi, -minus_b.lo), c, Pair(select(far.hi, near.hi, is_near), select(far.lo, near.lo, is_near)));
+    return Approach(direction, moment, a, Pair(-minus_b.hi, -minus_b.lo), c, Pair(select(far.hi, near.hi, is_near), select(far.lo, near.lo, is_near)));
+}
+
+// Whether rounding could decide whether the line of a primary ray touches the sphere: src/exact.rs has the margin.
+fn may_touch(ray: Ray, body: Body) -> bool {
+    let at = approach(ray, body);
+    let radius = body.shape.center_radius.w;
+    return abs(at.discriminant.hi) < params.tangent_margin * (at.a.hi * (radius * radius));
 }
 
 // Both intersections of the line.
@@ -131,22 +138,28 @@ fn root_between(ray: Ray, body: Body, t_min: real) -> bool {
     return at.exist & select(greater, is_nearer(at.lesser, end), lesser);
 }
 
-// The hit in object space: from the closest approach c' x (S' x c') / A half a chord back or forth.
-fn local_hit(ray: Ray, body: Body, hit: Hit) -> vec3r {
+// The hit in object space: from the closest approach c' x (S' x c') / A half a chord back or forth. In pairs, since what comes
+// next may lie far nearer than a radius: the eye, a light, another surface.
+fn local_hit(ray: Ray, body: Body, hit: Hit) -> Point {
     let at = approach(ray, body);
-    let perpendicular = cross(at.direction, at.moment) / at.a.hi;
-    let half_chord = at.direction * (sqrt(max(at.discriminant.hi, 0.0)) / at.a.hi);
-    return perpendicular + select(-half_chord, half_chord, hit.inside);
+    let perpendicular = pair_cross(at.direction, at.moment);
+    let discriminant = Pair(max(at.discriminant.hi, 0.0), select(0.0, at.discriminant.lo, at.discriminant.hi > 0.0));
+    let root = pair_square_root(discriminant);
+    let half_chord = pair_scaled3(at.direction, Pair(select(-root.hi, root.hi, hit.inside), select(-root.lo, root.lo, hit.inside)));
+    return pair_scaled3(pair_sum3(perpendicular, half_chord), pair_quotient(Pair(1.0, 0.0), at.a));
 }
 
 // The place of a point of the sphere's surface, given in object space.
-fn place_of(body: Body, scale: vec3r, local: vec3r) -> Point {
+fn place_of(body: Body, scale: vec3r, local: Point) -> Point {
     var offset = local;
     if ELLIPSOIDS {
-        offset *= scale;
+        // Divided by inv_scale: `scale` does not carry what rounding took from it.
+        let high = local.hi * scale;
+        let product = two_product3(high, body.shape.inv_scale);
+        let rest = ((local.hi - product.hi) - product.lo) + (local.lo - high * body.low.inv_scale);
+        offset = fast_two_sum3(high, rest * scale);
     }
-    let place = two_sum3(body.shape.center_radius.xyz, offset);
-    return fast_two_sum3(place.hi, place.lo + body.low.center_radius.xyz);
+    return pair_sum3(Pair3(body.shape.center_radius.xyz, body.low.center_radius.xyz), offset);
 }
 
 // A place seen from a corner of the world, in f32.

@@ -36,15 +36,22 @@ fn nearer_of(nearest: Hit, ray: Ray, body: Body, sphere: u32, own: Own, range: R
 // Loops below break at the end of their body: compilers for software devices run the body once more, in vain, where the
 // condition stands at the beginning, and take a continuing block for the beginning.
 
-// The nearer of a hit and the intersections with the spheres of one cell.
-fn nearest_in(cell: u32, before: Hit, ray: Ray, own: Own, range: Range) -> Hit {
-    var nearest = before;
-    let list = cell_at(cell);
+// The nearest intersection of a primary ray through the tile of this pixel.
+fn nearest_seen(ray: Ray, pixel: vec2<u32>) -> Hit {
+    let own = Own(NO_SHAPE, false, vec3r());
+    let range = primary_range();
+    let tile = pixel >> vec2(params.screen_shift);
+    let list = cell_at(tile.y * params.screen_across + tile.x);
+    var nearest = no_hit();
     var at = list.x;
     if at < list.y {
         loop {
             let sphere = entry_at(at);
-            nearest = nearer_of(nearest, ray, body_of(sphere), sphere, own, range);
+            let body = body_of(sphere);
+            nearest = nearer_of(nearest, ray, body, sphere, own, range);
+            if TANGENTS {
+                is_tangent |= may_touch(ray, body);
+            }
             at++;
             if at == list.y {
                 break;
@@ -54,14 +61,6 @@ fn nearest_in(cell: u32, before: Hit, ray: Ray, own: Own, range: Range) -> Hit {
     // Not by the condition of the loop, which compilers may take for granted behind it.
     is_cut |= at < list.y;
     return nearest;
-}
-
-// The nearest intersection of a primary ray through the tile of this pixel.
-fn nearest_seen(ray: Ray, pixel: vec2<u32>) -> Hit {
-    let own = Own(NO_SHAPE, false, vec3r());
-    let range = primary_range();
-    let tile = pixel >> vec2(params.screen_shift);
-    return nearest_in(tile.y * params.screen_across + tile.x, no_hit(), ray, own, range);
 }
 
 // The nearer of a hit and the intersections with the spheres that are too large for the cells of the grid.

@@ -4,6 +4,7 @@
 const STATUS_FINITE: u32 = 0u;
 const STATUS_NOT_FINITE: u32 = 1u;
 const STATUS_CUT: u32 = 2u;
+const STATUS_TANGENT: u32 = 4u;
 
 fn packed_pixel(color: vec3r) -> u32 {
     let level = vec3<u32>(real(255.0) * clamp(color, vec3r(), vec3r(real(1.0))) + params.quantize_bias);

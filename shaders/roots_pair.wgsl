@@ -1,10 +1,7 @@
-// The last steps of the quadratic, in pairs: one step of Newton's method after the rounded one.
+// The last steps of the quadratic, in pairs.
 
 fn square_root(x: Pair) -> Pair {
-    let root = sqrt(x.hi);
-    let square = two_product(root, root);
-    let low = ((x.hi - square.hi) - square.lo + x.lo) / (root + root);
-    return Pair(root, select(low, 0.0, root == 0.0));
+    return pair_square_root(x);
 }
 
 fn pair_sum(a: Pair, b: Pair) -> Pair {
@@ -13,8 +10,5 @@ fn pair_sum(a: Pair, b: Pair) -> Pair {
 }
 
 fn quotient(a: Pair, b: Pair) -> Distance {
-    let high = a.hi / b.hi;
-    let product = two_product(high, b.hi);
-    let low = ((a.hi - product.hi) - product.lo + (a.lo - high * b.lo)) / b.hi;
-    return fast_two_sum(high, low);
+    return pair_quotient(a, b);
 }

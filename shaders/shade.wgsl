@@ -18,13 +18,13 @@ fn unit(v: vec3r) -> vec3r {
 fn surface_at(ray: Ray, hit: Hit, material: Material) -> Surface {
     let body = body_of(hit.sphere);
     let local = local_hit(ray, body, hit);
-    var normal = local;
+    var normal = high_of(local);
     if ELLIPSOIDS {
         normal *= body.shape.inv_scale;
     }
     normal = unit(normal);
     normal = select(normal, -normal, hit.inside);
-    let own = Own(body.shape.index, hit.inside, local);
+    let own = Own(body.shape.index, hit.inside, high_of(local));
     return Surface(place_of(body, material.scale, local), normal, -unit(direction_of(ray)), own, hit.sphere);
 }
 

@@ -15,5 +15,7 @@ fn see(pixel: vec2<u32>, first_slot: u32, sample: u32) {
     let slot = first_slot + sample;
     begin(slot);
     let ray = primary_ray(pixel * SAMPLES + vec2(sample % SAMPLES, sample / SAMPLES));
-    follow(ray, nearest_seen(ray, pixel), slot);
+    let hit = nearest_seen(ray, pixel);
+    keep_status(slot);
+    follow(ray, hit, slot);
 }

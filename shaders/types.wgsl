@@ -34,6 +34,8 @@ struct Params {
     zero: u32,
     // Where in `entries` those of the grid begin.
     grid_entries: u32,
+    // A primary ray with a discriminant below this, in radii squared, may touch a sphere or not.
+    tangent_margin: f32,
 }
 
 // What the intersection reads of a sphere.

@@ -2,13 +2,14 @@
 
 mod partial;
 
+use std::cell::OnceCell;
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
 
 use crate::cpu::{Judge, Reference, Tally};
 use crate::effects::Effects;
-use crate::gpu::{self, Gpu, GpuRenderer};
+use crate::gpu::{self, Gpu, GpuRenderer, Rendered};
 use crate::misuse::{Misuse, check_picture};
 use crate::precision::Tier;
 use crate::scene::Scene;
@@ -76,7 +77,7 @@ pub enum Engine<'a, O = Rows> {
     /// The CPU reference.
     Cpu(Box<CpuEngine>),
     /// A Vulkan device.
-    Gpu(Box<GpuRenderer<'a, O>>, Duration),
+    Gpu(Box<DeviceEngine<'a, O>>),
 }
 
 /// The CPU reference with its clock.
@@ -99,6 +100,60 @@ impl CpuEngine {
     }
 }
 
+/// A device's renderer, and the reference for what its rounding cannot decide.
+#[derive(Debug)]
+pub struct DeviceEngine<'a, O> {
+    renderer: GpuRenderer<'a, O>,
+    prepare: Duration,
+    tangents: Option<Tangents>,
+}
+
+/// What decides whether rays touch spheres: the reference, once such a ray is met.
+#[derive(Debug)]
+struct Tangents {
+    scene: Scene,
+    settings: Settings,
+    effects: Effects,
+    reference: OnceCell<Reference<f64>>,
+    took: Duration,
+}
+
+impl Tangents {
+    fn new(scene: &Scene, settings: &Settings, effects: &Effects) -> Self {
+        Self {
+            scene: scene.clone(),
+            settings: *settings,
+            effects: effects.clone(),
+            reference: OnceCell::new(),
+            took: Duration::ZERO,
+        }
+    }
+
+    /// The colours of these pixels, and how many are not finite.
+    fn decided(&mut self, pixels: &[[u32; 2]]) -> Result<(Vec<[u8; 3]>, u64), Misuse> {
+        let start = Instant::now();
+        let mut colors = vec![[0; 3]; pixels.len()];
+        let reference = self.reference.get_or_init(|| Reference::new(&self.scene, &self.settings, &self.effects));
+        let tally = reference.pixels(pixels, &mut colors)?;
+        self.took += start.elapsed();
+        Ok((colors, tally.not_finite))
+    }
+}
+
+impl<O: Output> DeviceEngine<'_, O> {
+    /// Decides what rounding could not; `place` puts a pixel's colour where it belongs. Returns how many pixels are not finite.
+    fn decide(
+        &mut self,
+        Rendered { not_finite, tangents }: Rendered,
+        mut place: impl FnMut([u32; 2], [u8; 3]),
+    ) -> Result<u64, gpu::Error> {
+        let Some(reference) = self.tangents.as_mut().filter(|_| !tangents.is_empty()) else { return Ok(not_finite) };
+        let (colors, decided) = reference.decided(&tangents)?;
+        tangents.into_iter().zip(colors).for_each(|(pixel, color)| place(pixel, color));
+        Ok(not_finite + decided)
+    }
+}
+
 impl<'a> Engine<'a> {
     /// Prepares rows of `scene` for `backend`.
     pub fn new(
@@ -118,7 +173,12 @@ impl<'a> Engine<'a> {
     pub fn rows(&mut self, first: u32, rgb: &mut [u8]) -> Result<u64, gpu::Error> {
         match self {
             Self::Cpu(cpu) => Ok(cpu.timed(|reference| reference.rows(first, rgb))?),
-            Self::Gpu(gpu, _) => Ok(gpu.rows(first, rgb)?.not_finite),
+            Self::Gpu(gpu) => {
+                let rendered = gpu.renderer.rows(first, rgb)?;
+                let width = gpu.renderer.size().0 as usize;
+                let pixels = rgb.as_chunks_mut::<3>().0;
+                gpu.decide(rendered, |[x, y], color| pixels[(y - first) as usize * width + x as usize] = color)
+            }
         }
     }
 }
@@ -145,7 +205,9 @@ impl<'a, O: Output> Engine<'a, O> {
                 }))
             }
             Backend::Device(gpu, tier) => {
-                Self::Gpu(Box::new(GpuRenderer::with(gpu, scene, settings, effects, tier, options)?), start.elapsed())
+                let renderer = GpuRenderer::with(gpu, scene, settings, effects, tier, options)?;
+                let tangents = renderer.tells_tangents().then(|| Tangents::new(scene, settings, effects));
+                Self::Gpu(Box::new(DeviceEngine { renderer, prepare: start.elapsed(), tangents }))
             }
         })
     }
@@ -154,7 +216,7 @@ impl<'a, O: Output> Engine<'a, O> {
     pub fn size(&self) -> (u32, u32) {
         match self {
             Self::Cpu(cpu) => cpu.reference.size(),
-            Self::Gpu(gpu, _) => gpu.size(),
+            Self::Gpu(gpu) => gpu.renderer.size(),
         }
     }
 
@@ -162,7 +224,7 @@ impl<'a, O: Output> Engine<'a, O> {
     pub fn on_device_ms(&self) -> Option<f64> {
         match self {
             Self::Cpu(_) => None,
-            Self::Gpu(gpu, _) => gpu.has_clock().then(|| ms(gpu.times().on_device)),
+            Self::Gpu(gpu) => gpu.renderer.has_clock().then(|| ms(gpu.renderer.times().on_device)),
         }
     }
 
@@ -170,12 +232,13 @@ impl<'a, O: Output> Engine<'a, O> {
     pub fn times(&self) -> Times {
         match self {
             Self::Cpu(cpu) => Times { prepare_ms: ms(cpu.prepare), render_ms: ms(cpu.render), ..Times::default() },
-            Self::Gpu(gpu, prepare) => {
-                let times = gpu.times();
+            Self::Gpu(gpu) => {
+                let times = gpu.renderer.times();
+                let decided = gpu.tangents.as_ref().map_or(Duration::ZERO, |tangents| tangents.took);
                 Times {
-                    prepare_ms: ms(*prepare),
+                    prepare_ms: ms(gpu.prepare),
                     compile_ms: ms(times.compile),
-                    render_ms: ms(times.render),
+                    render_ms: ms(times.render + decided),
                     read_back_ms: ms(times.read_back),
                     longest_dispatch_ms: ms(times.longest_dispatch),
                     dispatches: times.dispatches,
@@ -191,7 +254,9 @@ impl<'a, O: Output> Engine<'a, O> {
                 let Tally { primary, shadow, reflection, .. } = cpu.tally;
                 Some(Rays { primary, shadow, reflection })
             }
-            Self::Gpu(gpu, _) => gpu.rays().map(|[primary, shadow, reflection]| Rays { primary, shadow, reflection }),
+            Self::Gpu(gpu) => {
+                gpu.renderer.rays().map(|[primary, shadow, reflection]| Rays { primary, shadow, reflection })
+            }
         }
     }
 }

@@ -141,7 +141,7 @@ impl Units {
 }
 
 /// The greatest coordinate, without its sign.
-fn extent(v: DVec3) -> f64 {
+pub(crate) fn extent(v: DVec3) -> f64 {
     v.abs().max_element()
 }
 

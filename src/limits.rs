@@ -1,24 +1,51 @@
-//! Scenes of which not even `f64` gives a sound picture: they are refused.
+//! Scenes whose numbers leave the range of those that render them: they are refused.
 
 use rayon::prelude::*;
 
 use crate::brightness::{Brightness, Scalar};
-use crate::effects::Effects;
-use crate::geometry::Units;
-use crate::scene::{Scene, Sphere, Window};
+use crate::effects::{Effect, Effects};
+use crate::geometry::{Units, extent};
+use crate::scene::{Scene, Window};
 use crate::settings::Settings;
 
 /// How many times larger than any semi-axis the whole scene may be, so that squares of the way to a light in semi-axes stay within
 /// `f64`.
 const MAX_WORLD: f64 = 1e120;
+/// Likewise, and the way to any light that casts shadows, so that such squares stay within `f32`.
+const MAX_SINGLE: f64 = 5e18;
 /// How many times larger than NEAR the window may be.
 const MAX_WINDOW: f64 = 1e50;
 /// How many times larger or smaller than the scene the window may be.
 const MAX_PLANE: f64 = 1e250;
 
-/// Why `scene` cannot be rendered; `None` where it can.
+/// Why `scene` cannot be rendered at all; `None` where it can.
 pub fn problem(scene: &Scene, settings: &Settings, effects: &Effects) -> Option<String> {
     sizes(scene, settings).or_else(|| Brightness::of(scene, effects).problem(scene, Scalar::Double))
+}
+
+/// Why kernels of this scalar cannot render `scene`, which can be rendered and is in their units; `None` where they can.
+pub fn problem_in(scalar: Scalar, scene: &Scene, effects: &Effects) -> Option<String> {
+    let world = || {
+        let reach = reach(scene, effects);
+        let name = name_of_small(scene, |axis| axis * MAX_SINGLE < reach)?;
+        Some(format!("the scene is more than {MAX_SINGLE:.0e} times larger than the least semi-axis of {name}"))
+    };
+    let brightness = Brightness::of(scene, effects).problem(scene, scalar);
+    brightness.or_else(|| if scalar == Scalar::Single { world() } else { None })
+}
+
+/// The greatest coordinate of a sphere or of a light that casts shadows.
+pub fn reach(scene: &Scene, effects: &Effects) -> f64 {
+    let casts = effects.set.has(Effect::Shadows);
+    let lights = scene.lights.iter().filter(|_| casts).map(|light| extent(light.position));
+    let spheres = scene.spheres.par_iter().map(|s| extent(s.center).max(extent(s.scale))).reduce(|| 0.0, f64::max);
+    lights.fold(spheres, f64::max)
+}
+
+/// The first sphere whose least semi-axis is small, in words.
+fn name_of_small(scene: &Scene, is_small: impl Fn(f64) -> bool + Sync) -> Option<String> {
+    let first = scene.spheres.par_iter().position_first(|s| is_small(s.scale.abs().min_element()))?;
+    Some(format!("sphere '{}'", scene.sphere_names.get(first)))
 }
 
 /// What is too large or too small beside the rest.
@@ -33,8 +60,7 @@ fn sizes(scene: &Scene, settings: &Settings) -> Option<String> {
     if let Some(name) = far_light.or_else(|| if greatest.is_finite() { None } else { far_sphere() }) {
         return Some(format!("{name} is so far from the eye that f64 cannot hold the distance"));
     }
-    let is_small = |s: &Sphere| s.scale.abs().min_element() * factor * MAX_WORLD < greatest;
-    if let Some(name) = world.spheres.par_iter().position_first(is_small).map(sphere) {
+    if let Some(name) = name_of_small(&world, |axis| axis * factor * MAX_WORLD < greatest) {
         return Some(format!("the scene is more than {MAX_WORLD:.0e} times larger than the least semi-axis of {name}"));
     }
 

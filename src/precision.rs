@@ -10,6 +10,7 @@ use serde::Serialize;
 use crate::brightness::{Brightness, Scalar};
 use crate::effects::{Effect, Effects};
 use crate::geometry::Units;
+use crate::limits;
 use crate::scene::Scene;
 use crate::settings::Secondary;
 
@@ -83,9 +84,9 @@ pub struct Promise {
     pub gap: f64,
     /// Greatest specular exponent.
     pub exponent: f64,
-    /// Greatest distance of a light from a sphere, in least semi-axes of the sphere: squares of it stay within the range of the
-    /// tier's numbers.
-    pub light_distance: f64,
+    /// Greatest coordinate of a sphere or of a light that casts shadows, seen from the eye, in least semi-axes of any sphere: squares
+    /// of it stay within the range of the tier's numbers.
+    pub reach: f64,
     /// Greatest [`Brightness`].
     pub brightness: f64,
 }
@@ -101,7 +102,7 @@ impl Tier {
                 axis_ratio: 1e4,
                 gap: 1e-5,
                 exponent: 1e6,
-                light_distance: 1e15,
+                reach: 1e15,
                 brightness: Scalar::Single.max_brightness(),
             },
             Self::Robust => Promise {
@@ -111,7 +112,7 @@ impl Tier {
                 axis_ratio: 1e4,
                 gap: 1e-6,
                 exponent: 1e6,
-                light_distance: 1e15,
+                reach: 1e15,
                 brightness: Scalar::Single.max_brightness(),
             },
             Self::Double => Promise {
@@ -121,7 +122,7 @@ impl Tier {
                 axis_ratio: 1e6,
                 gap: 1e-13,
                 exponent: 1e12,
-                light_distance: f64::INFINITY,
+                reach: f64::INFINITY,
                 brightness: Scalar::Double.max_brightness(),
             },
         }
@@ -143,8 +144,8 @@ pub struct Demand {
     pub gap: Extreme,
     /// Greatest specular exponent.
     pub exponent: Extreme,
-    /// Greatest distance of a light from a sphere, in least semi-axes of the latter.
-    pub light_distance: Extreme,
+    /// Greatest coordinate of a sphere or of a light that casts shadows, in least semi-axes of any sphere.
+    pub reach: Extreme,
     /// Greatest [`Brightness`], with the sphere that makes it so.
     pub brightness: Extreme,
 }
@@ -180,7 +181,7 @@ impl Demand {
     pub fn of(scene: &Scene, effects: &Effects) -> Self {
         // The brightness aside, all of it is the same in any units: in those of kernels no square leaves the range.
         let scene = &*Units::of(scene, Secondary::EXACT).applied_to(Cow::Borrowed(scene));
-        let brightness = Brightness::of(scene, effects);
+        let (brightness, reach) = (Brightness::of(scene, effects), limits::reach(scene, effects));
         let least = Extreme { value: 0.0, sphere: None };
         let greatest = Extreme { value: f64::INFINITY, sphere: None };
         let mut demand = Self {
@@ -190,7 +191,7 @@ impl Demand {
             axis_ratio: least,
             gap: greatest,
             exponent: least,
-            light_distance: least,
+            reach: least,
             brightness: Extreme { value: brightness.greatest(), sphere: brightness.sphere },
         };
         // Secondary rays start on any surface.
@@ -212,9 +213,7 @@ impl Demand {
                 let corner = (sphere.center - low).abs().max((sphere.center - high).abs());
                 demand.secondary_distance.raise(corner.length() / short, index);
             }
-            for light in &origins[1..] {
-                demand.light_distance.raise((*light - sphere.center).length() / short, index);
-            }
+            demand.reach.raise(reach / short, index);
             for origin in &origins {
                 let height = ((*origin - sphere.center) / scale).length() - 1.0;
                 demand.nearness.lower(height.abs(), index);
@@ -265,20 +264,19 @@ impl Demand {
             .or_else(|| above("axis ratio", &self.axis_ratio, promise.axis_ratio))
             .or_else(|| below("gap to a nested surface", &self.gap, promise.gap))
             .or_else(|| above("specular exponent", &self.exponent, promise.exponent))
-            .or_else(|| above("light distance over radius", &self.light_distance, promise.light_distance))
+            .or_else(|| above("greatest coordinate over radius", &self.reach, promise.reach))
             .or_else(|| above("brightness", &self.brightness, promise.brightness))
     }
 
     /// The demands, a line.
     pub fn summary(&self) -> String {
-        let Self { distance, secondary_distance, nearness, axis_ratio, gap, exponent, light_distance, brightness } =
-            self;
+        let Self { distance, secondary_distance, nearness, axis_ratio, gap, exponent, reach, brightness } = self;
         format!(
-            "distance/radius {:.3e} (eye), {:.3e} (surfaces), {:.3e} (lights), nearness {:.3e}, axis ratio {:.3e}, nested gap {:.3e}, \
+            "distance/radius {:.3e} (eye), {:.3e} (surfaces), {:.3e} (all), nearness {:.3e}, axis ratio {:.3e}, nested gap {:.3e}, \
              exponent {}, brightness {:.3e}",
             distance.value,
             secondary_distance.value,
-            light_distance.value,
+            reach.value,
             nearness.value,
             axis_ratio.value,
             gap.value,

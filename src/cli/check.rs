@@ -11,6 +11,7 @@ use super::options::PictureOptions;
 use super::output::{out, outln};
 use super::render::{explanation, precision_explanation};
 use crate::effects::Effects;
+use crate::limits;
 use crate::precision::{self, Selection, Tier};
 use crate::scene::{Diagnostic, Scene, Severity};
 use crate::settings::Settings;
@@ -73,6 +74,8 @@ struct Contents {
     /// Spheres with Kt > 0.
     refractive_spheres: usize,
     output: Option<String>,
+    /// Why it cannot be rendered all the same, if so.
+    refused: Option<String>,
     effects: Effects,
     precision: Selection,
 }
@@ -94,6 +97,7 @@ impl Contents {
             semi_axes: axes.reduce(|(a, b), (c, d)| (a.min(c), b.max(d))).map(|(low, high)| [low, high]),
             refractive_spheres: scene.spheres.iter().filter(|sphere| sphere.kt != 0.0).count(),
             output: scene.output.clone(),
+            refused: limits::problem(scene, settings, &effects),
             precision: Selection::of(
                 &settings.view.relative(scene),
                 &effects,
@@ -116,6 +120,9 @@ impl Contents {
         }
         if self.refractive_spheres > 0 {
             outln!("  glass        {} spheres with Kt > 0", self.refractive_spheres);
+        }
+        if let Some(why) = &self.refused {
+            outln!("  refused      the scene cannot be rendered: {why}");
         }
         out!("{}{}", explanation(name, &self.effects), precision_explanation(&self.precision));
     }
@@ -144,7 +151,8 @@ fn check_all(args: &Args) -> Result<u8, Failure> {
             args.picture.resize(scene);
         }
         let contents = input.parsed.scene.as_ref().map(|scene| Contents::new(scene, &args.picture, &settings));
-        if contents.is_none() {
+        let ok = contents.as_ref().is_some_and(|contents| contents.refused.is_none());
+        if !ok {
             code = SCENE;
         }
         if !args.json {
@@ -159,7 +167,7 @@ fn check_all(args: &Args) -> Result<u8, Failure> {
             }
         }
         summaries.push(Summary {
-            ok: contents.is_some(),
+            ok,
             errors: input.parsed.errors,
             warnings: input.parsed.warnings,
             messages: input.parsed.diagnostics.iter().map(Message::new).collect(),

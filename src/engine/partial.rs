@@ -1,5 +1,6 @@
 //! Pictures of which not all pixels are sampled.
 
+use std::collections::HashMap;
 use std::time::{Duration, Instant};
 
 use super::{Backend, Engine, ms};
@@ -18,7 +19,16 @@ impl Engine<'_, Pixels> {
     pub fn pixels(&mut self, pixels: &[[u32; 2]], colors: &mut [[u8; 3]]) -> Result<u64, gpu::Error> {
         match self {
             Self::Cpu(cpu) => Ok(cpu.timed(|reference| reference.pixels(pixels, colors))?),
-            Self::Gpu(gpu, _) => Ok(gpu.pixels(pixels, colors)?.not_finite),
+            Self::Gpu(gpu) => {
+                let rendered = gpu.renderer.pixels(pixels, colors)?;
+                let mut places: HashMap<_, Vec<usize>> = HashMap::new();
+                if !rendered.tangents.is_empty() {
+                    pixels.iter().enumerate().for_each(|(place, &pixel)| places.entry(pixel).or_default().push(place));
+                }
+                gpu.decide(rendered, |pixel, color| {
+                    places.get(&pixel).into_iter().flatten().for_each(|&place| colors[place] = color);
+                })
+            }
         }
     }
 }

@@ -13,7 +13,7 @@ use crate::scene::Scene;
 use crate::settings::Settings;
 
 /// Values before the spheres, of each sphere, of each light, and after the lights.
-const COUNTS: [usize; 4] = [29, 19, 6, 6];
+const COUNTS: [usize; 4] = [30, 19, 6, 6];
 
 /// Packs `scene` and lets the device write back every field in the order of `shaders/echo.wgsl`: numbers as the bits of
 /// their nearest `f32`.
@@ -33,7 +33,7 @@ pub fn echo_layout(
         return Err(Misuse::Picture("only two spheres with all effects are echoed".into()).into());
     }
     let accel = Acceleration::new(scene, &Camera::new(scene, settings), effects.set, kernel.rounding());
-    let packed = Packed::new(scene, settings, effects, kernel, &accel, None);
+    let packed = Packed::new(scene, settings, effects, kernel, &accel, None, 0.25);
     let [head, sphere, light, tail] = COUNTS;
     let job = Job {
         what: "echoing the layout",

@@ -41,6 +41,7 @@ pub struct ParamValues {
     pub window_low: u32,
     pub light_count: u32,
     pub max_depth: u32,
+    pub tangent_margin: f64,
 }
 
 /// Where the lists of spheres are.
@@ -145,6 +146,8 @@ macro_rules! layout {
                     zero: u32,
                     /// Where in the entries those of the grid begin.
                     grid_entries: u32,
+                    /// A primary ray with a discriminant below this, in radii squared, may touch a sphere or not.
+                    tangent_margin: f32,
                     /// To the size that WGSL gives the struct.
                     padding1: [u32; $params1],
                 }
@@ -271,6 +274,8 @@ macro_rules! layout {
                         window_low: values.window_low,
                         light_count: values.light_count,
                         max_depth: values.max_depth,
+                        // Not below the margin.
+                        tangent_margin: (values.tangent_margin as f32).next_up(),
                         ..Params::zeroed()
                     }
                 }
@@ -333,11 +338,11 @@ macro_rules! layout {
 
 layout!(
     /// The structs of the `f32` kernels.
-    single, f32, params 0 3, shape 0, material 1, light 1, face 1
+    single, f32, params 0 2, shape 0, material 1, light 1, face 1
 );
 layout!(
     /// The structs of the `f64` kernels.
-    double, f64, params 1 7, shape 1, material 2, light 2, face 2
+    double, f64, params 1 6, shape 1, material 2, light 2, face 2
 );
 
 const _: () = {

@@ -146,11 +146,12 @@ impl<'a> Packed<'a> {
         kernel: Kernel,
         accel: &Acceleration,
         indices: Option<Vec<u32>>,
+        tangent_margin: f64,
     ) -> Self {
         if kernel.is_double() {
-            pack::<double::Layout>(scene, settings, effects, false, accel, indices)
+            pack::<double::Layout>(scene, settings, effects, false, accel, indices, tangent_margin)
         } else {
-            pack::<single::Layout>(scene, settings, effects, kernel.carries_low(), accel, indices)
+            pack::<single::Layout>(scene, settings, effects, kernel.carries_low(), accel, indices, tangent_margin)
         }
     }
 }
@@ -167,6 +168,7 @@ fn pack<'a, L: Layout + 'a>(
     with_low: bool,
     accel: &Acceleration,
     indices: Option<Vec<u32>>,
+    tangent_margin: f64,
 ) -> Packed<'a> {
     let on = |effect| effects.set.has(effect);
     let camera = Camera::new(scene, settings);
@@ -196,6 +198,7 @@ fn pack<'a, L: Layout + 'a>(
         window_low: places,
         light_count: scene.lights.len() as u32,
         max_depth: effects.depth,
+        tangent_margin,
     };
     let material = move |i: usize| {
         let sphere = &scene.spheres[i];

@@ -131,6 +131,7 @@ impl Specialisation {
             ("BLINN", f64::from(self.blinn)),
             ("SAMPLES", f64::from(self.samples)),
             ("COUNT_RAYS", f64::from(self.count_rays)),
+            ("TANGENTS", f64::from(self.kernel.tells_tangents())),
             ("GROUP", f64::from(self.workgroup)),
         ];
         if self.keeps_paths() {

@@ -387,6 +387,7 @@ fn params<L: Layout>() -> Vec<u8> {
         window_low: 0,
         light_count: 0,
         max_depth: 0,
+        tangent_margin: 0.0,
     })])
 }
 

@@ -12,6 +12,7 @@ use std::num::NonZero;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use rayon::prelude::*;
 use wgpu::util::DeviceExt;
 
 use super::device::Gpu;
@@ -24,10 +25,12 @@ use super::tables::{are_too_large, check_fits, copies_fit, copy_resources, list_
 use super::timestamps::Timestamps;
 use super::upload::empty_texels;
 use crate::accel::{Acceleration, Cover, Density, Rounding};
-use crate::brightness::{Brightness, Scalar};
+use crate::brightness::Scalar;
 use crate::camera::Camera;
 use crate::effects::{Effect, Effects};
-use crate::geometry::{in_range, shape_indices};
+use crate::exact::TangentMargin;
+use crate::geometry::{ellipsoid, in_range, shape_indices};
+use crate::limits;
 use crate::misuse::check_picture;
 use crate::precision::Tier;
 use crate::scene::Scene;
@@ -57,8 +60,17 @@ pub struct Options {
 /// What the pixels of a picture say of themselves.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Rendered {
-    /// How many are not finite.
+    /// How many are not finite, those below left out.
     pub not_finite: u64,
+    /// Pixels with a ray that passes so near to touching a sphere that rounding decides whether it does: each shows either answer.
+    pub tangents: Vec<[u32; 2]>,
+}
+
+impl Rendered {
+    fn add(&mut self, other: Self) {
+        self.not_finite += other.not_finite;
+        self.tangents.extend(other.tangents);
+    }
 }
 
 /// Times of the work on the device so far.
@@ -214,10 +226,12 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         options: &Options,
     ) -> Result<Self, Error> {
         check_picture(scene, settings)?;
+        let (near, eye) = (scene.window.near, settings.view.eye.length());
         let (scene, settings) = in_range(scene, settings);
         let (scene, settings) = (scene.as_ref(), &settings);
+        let eye = eye * (scene.window.near / near);
         let scalar = if kernel.is_double() { Scalar::Double } else { Scalar::Single };
-        if let Some(why) = Brightness::of(scene, effects).problem(scene, scalar) {
+        if let Some(why) = limits::problem_in(scalar, scene, effects) {
             let help = "help: --precision double can, where the device has f64, and --device cpu";
             return Err(Error::NoDevice(format!("{} cannot render this scene: {why}\n  {help}", kernel.name())));
         }
@@ -235,11 +249,17 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
             accel = lists(&Density::LEAST);
         }
         let mut specialisation = specialisation.with_grid(accel.grid.as_ref(), tuning);
+        let true_axes = effects.set.has(Effect::Ellipsoids);
         let leaves_surfaces = effects.set.has_secondary_rays();
-        let indices =
-            leaves_surfaces.then(|| shape_indices(&scene.spheres, effects.set.has(Effect::Ellipsoids))).flatten();
+        let indices = leaves_surfaces.then(|| shape_indices(&scene.spheres, true_axes)).flatten();
+        let tangent_margin = if kernel.tells_tangents() {
+            let ellipsoids = scene.spheres.par_iter().map(|sphere| ellipsoid(sphere, true_axes));
+            TangentMargin::new(eye, &camera, kernel.rounding().tests).widest(ellipsoids)
+        } else {
+            0.0
+        };
         specialisation.shared_surfaces = indices.is_some();
-        let packed = Packed::new(scene, settings, effects, kernel, &accel, indices);
+        let packed = Packed::new(scene, settings, effects, kernel, &accel, indices, tangent_margin);
         if specialisation.variant().copies() && !copies_fit(gpu, &packed, &accel) {
             specialisation.walk = Walk::AtOnce;
         }
@@ -292,6 +312,11 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
     /// Which kernels render.
     pub fn variant(&self) -> Variant {
         self.inputs.specialisation.variant()
+    }
+
+    /// Whether it tells pixels whose rays may touch a sphere or not.
+    pub fn tells_tangents(&self) -> bool {
+        self.inputs.specialisation.kernel.tells_tangents()
     }
 
     /// Width and height of the picture.
@@ -434,9 +459,9 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
 
     /// Whether the dispatch has to be repeated, since bounces or paths that share an invocation, and so the turns of its loops, need
     /// more of them than it has: from then on each has its own.
-    fn walks_at_once_instead(&mut self, statuses: Statuses) -> bool {
+    fn walks_at_once_instead(&mut self, statuses: &Statuses) -> bool {
         let specialisation = &mut self.inputs.specialisation;
-        let repeats = specialisation.shares_turns() && statuses.may_be_cut(self.samples);
+        let repeats = specialisation.shares_turns() && statuses.is_cut();
         if repeats {
             specialisation.walk = Walk::AtOnce;
             self.work = None;

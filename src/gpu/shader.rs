@@ -63,6 +63,11 @@ impl Kernel {
         }
     }
 
+    /// Whether its pixels say where rounding could decide whether a primary ray touches a sphere.
+    pub fn tells_tangents(self) -> bool {
+        self.is_double() || self.carries_low()
+    }
+
     /// Whether it calculates in `f64`.
     pub fn is_double(self) -> bool {
         self == Self::Tier(Tier::Double)

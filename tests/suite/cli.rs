@@ -385,6 +385,9 @@ fn scenes_beyond_the_range_of_numbers_are_refused() {
     let tiny = format!("{SCENE}SPHERE t 0 0 -5 1e-200 1 1 1 1 1 1 0 0 0 1\n");
     for (scene, reason) in [(&too_bright, "sphere 's'"), (&tiny, "sphere 't'")] {
         let place = Place::new(scene);
+        let check = place.run("check scene.txt");
+        assert_exit(&check, 3, "");
+        assert!(String::from_utf8_lossy(&check.stdout).contains("the scene cannot be rendered"));
         for arguments in ["render scene.txt --device cpu", "scene.txt"] {
             let output = place.run(arguments);
             assert_exit(&output, 3, "the scene cannot be rendered");

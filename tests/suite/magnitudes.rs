@@ -3,7 +3,7 @@
 use glam::DVec3;
 use trueray::cpu::{Reference, seen_through};
 use trueray::effects::Effects;
-use trueray::gpu::{Gpu, GpuRenderer, Kernel};
+use trueray::gpu::{Choice, Gpu, GpuRenderer, Kernel};
 use trueray::limits;
 use trueray::precision::{self, Selection, Tier};
 use trueray::scene::{Light, Scene, Sphere, Window};
@@ -35,13 +35,19 @@ fn device(gpu: &Gpu, kernel: Kernel, scene: &Scene, settings: &Settings, roundin
     let effects = Effects::of(scene, settings);
     let mut renderer = GpuRenderer::with_rounding(gpu, scene, settings, &effects, kernel, rounding).ok()?;
     match renderer.rows(0, &mut rgb) {
-        Ok(rendered) => assert_eq!(rendered.not_finite, 0),
+        Ok(rendered) => assert_eq!(rendered.not_finite, 0, "{kernel:?}: {:?}", precision::Demand::of(scene, &effects)),
         Err(error) => {
             assert!(error.to_string().contains("turns of a loop"), "{error}");
             return None;
         }
     }
     Some(rgb)
+}
+
+/// The one device, with kernels that are kept from picture to picture.
+fn keeping_gpu(test: &str) -> Option<Gpu> {
+    drop(gpu(test)?);
+    Some(Gpu::open(&Choice::Gpu).unwrap().keeping_kernels())
 }
 
 /// How many pixels differ.
@@ -147,7 +153,8 @@ fn odd_scene(seed: u64) -> (Scene, Settings) {
         }
     }
     // And all of it in other units.
-    let factor = if seed / 64 % 2 == 0 { 1.0 } else { 2_f64.powi((random.within(-1.0, 1.0) * most) as i32 * 2) };
+    let factor =
+        if (seed / 64).is_multiple_of(2) { 1.0 } else { 2_f64.powi((random.within(-1.0, 1.0) * most) as i32 * 2) };
     (scaled(&scene, factor), settings)
 }
 
@@ -183,11 +190,10 @@ fn lists_hold_at_every_magnitude() {
 
 #[test]
 fn lists_hold_at_every_magnitude_and_tier() {
-    let Some(_shared) = gpu("lists_hold_at_every_magnitude_and_tier") else { return };
-    let gpu = Gpu::open(&trueray::gpu::Choice::Gpu).unwrap().keeping_kernels();
+    let Some(gpu) = keeping_gpu("lists_hold_at_every_magnitude_and_tier") else { return };
     for kernel in kernels(&gpu) {
         let mut rendered = 0;
-        for seed in (1..768).step_by(7) {
+        for seed in (1..768).step_by(11) {
             let (scene, settings) = odd_scene(seed);
             if limits::problem(&scene, &settings, &Effects::of(&scene, &settings)).is_some() {
                 continue;
@@ -202,14 +208,15 @@ fn lists_hold_at_every_magnitude_and_tier() {
                 assert_eq!(differing(&lists, &cpu(&scene, &settings, Rounding::DOUBLE)), 0, "scene {seed}");
             }
         }
-        assert!(rendered > 60, "{rendered}");
+        // Single precision refuses more of them.
+        assert!(rendered > 25, "{rendered}");
     }
 }
 
 /// From far away a light shines from the same direction as from farther still.
 #[test]
 fn shadows_of_a_far_light_do_not_depend_on_its_distance() {
-    let shared = gpu("shadows_of_a_far_light_do_not_depend_on_its_distance");
+    let shared = keeping_gpu("shadows_of_a_far_light_do_not_depend_on_its_distance");
     let mut with_shadows = 0;
     for seed in 0..8 {
         let mut random = Random::new(15, seed);
@@ -241,7 +248,7 @@ fn shadows_of_a_far_light_do_not_depend_on_its_distance() {
             let demand = precision::Demand::of(&scene, &effects);
             for kernel in kernels(gpu) {
                 let Kernel::Tier(tier) = kernel else { continue };
-                if demand.light_distance.value > tier.promise().light_distance {
+                if demand.reach.value > tier.promise().reach {
                     assert!(exponent > 13, "{tier}");
                     continue;
                 }
@@ -287,13 +294,13 @@ fn no_picture_depends_on_its_units() {
 /// Spheres wholly beyond the image plane look the same through any window of the same shape.
 #[test]
 fn no_picture_depends_on_the_size_of_its_window() {
-    let shared = gpu("no_picture_depends_on_the_size_of_its_window");
+    let shared = keeping_gpu("no_picture_depends_on_the_size_of_its_window");
     let mut random = Random::new(16, 0);
     let mut scene = usual_scene(&mut random);
     scene.spheres.retain(|sphere| sphere.center.z < -3.0);
     for settings in [Settings::classic(), Settings::exact()] {
         let expected = cpu(&scene, &settings, Rounding::DOUBLE);
-        let kernels = shared.as_ref().map(|gpu| kernels(gpu)).unwrap_or_default();
+        let kernels = shared.as_ref().map(kernels).unwrap_or_default();
         let on_device = |kernel: Kernel, scene: &Scene| {
             device(shared.as_ref().unwrap(), kernel, scene, &settings, kernel.rounding()).unwrap()
         };
@@ -336,13 +343,14 @@ fn inside_a_mirror(kr: f64) -> Scene {
 
 #[test]
 fn negative_mirrors_alternate_between_white_and_black() {
-    let shared = gpu("negative_mirrors_alternate_between_white_and_black");
-    for kr in [-2.0, -6e5, -6e25] {
+    let shared = keeping_gpu("negative_mirrors_alternate_between_white_and_black");
+    for kr in [-2.0_f64, -6e5, -6e25] {
         let scene = inside_a_mirror(kr);
-        for max_depth in 0..10 {
+        for bounces in 0..10_i32 {
+            let max_depth = bounces.unsigned_abs();
             let settings = Settings { max_depth, ..Settings::exact() };
             let effects = Effects::of(&scene, &settings);
-            let sum: f64 = (0..=max_depth).map(|bounce| kr.powi(bounce as i32)).sum();
+            let sum: f64 = (0..=bounces).map(|bounce| kr.powi(bounce)).sum();
             let level = (255.0 * (0.5 * sum).clamp(0.0, 1.0) + 0.5) as u8;
             let (expected, not_finite) = cpu_picture::<f64>(&scene, &settings, &effects);
             assert_eq!(not_finite, 0);
@@ -356,10 +364,25 @@ fn negative_mirrors_alternate_between_white_and_black() {
     }
 }
 
+/// The last of three bounces between two mirrors outweighs the one before it, though what it shows is a thousand times darker.
+#[test]
+fn the_weight_of_a_ray_is_not_limited_where_that_would_be_seen() {
+    let mut scene = scene_of(
+        "SPHERE bright 0 0 -5 1 1 1 1 1 1 1 0 0 -6e25 1\nSPHERE dark 0 0 5 1 1 1 1 1 1 1e-3 0 0 -6e25 1\nAMBIENT 1 1 1",
+    );
+    (scene.width, scene.height) = (9, 9);
+    let middle = 3 * (4 * 9 + 4);
+    for (max_depth, level) in [(1, 0), (2, 255), (3, 0), (4, 255)] {
+        let settings = Settings { max_depth, ..Settings::exact() };
+        let picture = cpu(&scene, &settings, Rounding::DOUBLE);
+        assert_eq!(picture[middle..middle + 3], [level; 3], "depth {max_depth}");
+    }
+}
+
 /// What is too bright for `f32` takes `double`, and `fast` refuses it rather than show something else.
 #[test]
 fn colours_beyond_single_precision_take_double() {
-    let shared = gpu("colours_beyond_single_precision_take_double");
+    let shared = keeping_gpu("colours_beyond_single_precision_take_double");
     let mirrors = "SPHERE a -1 0 -5 1 1 1 1 1 1 0.5 0.5 0.5 -6e25 9\nSPHERE b 1 0 -5 1 1 1 1 1 1 0.5 0.5 0.5 -6e25 9\n\
                    SPHERE c 0 1.8 -6 1 1 1 1 0.5 0.2 0.5 0.5 0.5 0 9\nLIGHT l 3 3 3 1 1 1\nAMBIENT 1 1 1";
     let ball = "SPHERE a 0 0 -5 1 1 1 0.5 0.5 0.5 0.5 0.5 0.5 0 9\n";
@@ -418,6 +441,19 @@ fn what_f64_cannot_hold_is_refused() {
     let with_near = |near: f64| Scene { window: Window { near, ..scene.window }, ..scene.clone() };
     assert!(problem(&with_near(1e-60), &Settings::classic()).unwrap().contains("NEAR"));
     assert!(problem(&with_near(1e300), &Settings::classic()).unwrap().contains("NEAR"));
+    // Not all kernels can hold what the reference can.
+    if let Some(gpu) = gpu("what_f64_cannot_hold_is_refused") {
+        let dust = scene_of(&format!("{ball}SPHERE dust 0 0 -4 1e-30 1 1 1 1 1 1 0 0 0 1\nAMBIENT 1 1 1"));
+        let (settings, effects) = (Settings::classic(), Effects::of(&dust, &Settings::classic()));
+        assert_eq!(problem(&dust, &settings), None);
+        for kernel in kernels(&gpu) {
+            let renderer = GpuRenderer::with_rounding(&gpu, &dust, &settings, &effects, kernel, kernel.rounding());
+            match kernel {
+                Kernel::Tier(Tier::Double) => assert!(renderer.is_ok()),
+                _ => assert!(renderer.unwrap_err().to_string().contains("sphere 'dust'")),
+            }
+        }
+    }
     let view = View::new(DVec3::new(1e308, 0.0, 0.0), None, DVec3::Y).unwrap();
     let mut far = scene.clone();
     far.spheres[0].center.x = -1e308;

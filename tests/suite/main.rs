@@ -9,6 +9,7 @@
 
 mod bench;
 mod camera;
+mod claims;
 mod cli;
 mod compare;
 mod drivers;
@@ -16,12 +17,14 @@ mod effects;
 mod explain;
 mod export;
 mod film;
+mod golden;
 mod keys;
 mod lists;
 mod magnitudes;
 mod misuse;
 mod oracle;
 mod parse;
+mod phong;
 mod pictures;
 mod rays;
 mod refraction;

@@ -26,10 +26,15 @@ pub(crate) fn gpu(test: &str) -> Option<MutexGuard<'static, Gpu>> {
     }
 }
 
-/// Says that a test is skipped, past the test harness, which hides what passing tests print.
-#[allow(clippy::explicit_write, reason = "eprintln! is what the harness hides")]
+/// Says that a test is skipped.
 pub(crate) fn say_skipped(test: &str, why: &str) {
-    writeln!(std::io::stderr(), "{test}: skipped: {why}").unwrap();
+    say(test, &format!("skipped: {why}"));
+}
+
+/// Says something past the test harness, which hides what passing tests print.
+#[allow(clippy::explicit_write, reason = "eprintln! is what the harness hides")]
+pub(crate) fn say(test: &str, what: &str) {
+    writeln!(std::io::stderr(), "{test}: {what}").unwrap();
 }
 
 /// Whether an environment variable is set to something but 0.

@@ -4,11 +4,13 @@
 
 use trueray::cpu::Reference;
 use trueray::effects::Effects;
+use trueray::engine::{Backend, Engine, Options, Pixels};
 use trueray::film::Picture;
+use trueray::precision::Tier;
 use trueray::scene::Scene;
 use trueray::settings::Settings;
 
-use crate::support::{cpu_picture, scene_of};
+use crate::support::{cpu_picture, gpu, gpu_picture, say_skipped, scene_of};
 
 /// One sphere alone before a black background, all numbers of which are these over `unit`.
 struct Case {
@@ -159,4 +161,52 @@ fn the_last_place_of_a_radius_decides() {
         }
     }
     assert!(tangents > 200, "{tangents}");
+}
+
+/// Rays that touch a sphere, from the device: single pixels and whole pictures, also among several samples of a pixel.
+#[test]
+fn devices_hit_what_rays_touch() {
+    let Some(gpu) = gpu("devices_hit_what_rays_touch") else { return };
+    let mut tangents = 0;
+    for case in cases().filter(is_whole).step_by(12) {
+        let scene = case.scene();
+        for settings in conventions() {
+            let effects = Effects::of(&scene, &settings);
+            for tier in [Tier::Robust, Tier::Double].into_iter().filter(|&tier| gpu.kernel(tier).is_ok()) {
+                let (picture, _) = gpu_picture(&gpu, tier, &scene, &settings, &effects);
+                tangents += assert_exact(&case, &settings, &picture);
+            }
+        }
+    }
+    assert!(tangents > 50, "{tangents}");
+}
+
+/// With lights and mirrors, several samples and pixels of a list: the very bytes of the reference.
+#[test]
+fn what_follows_a_tangent_is_decided_too() {
+    let Some(gpu) = gpu("what_follows_a_tangent_is_decided_too") else { return };
+    if !gpu.info.f64 {
+        return say_skipped("what_follows_a_tangent_is_decided_too", "the device has no f64");
+    }
+    let mut scene = scene_of(
+        "SPHERE s 0 0 -5 3 3 3 0.9 0.5 0.3 0.3 0.6 0.4 0.5 9\nSPHERE m 3 4 -9 2 2 2 0.2 0.5 0.9 0.3 0.6 0.4 0.5 9\n\
+         LIGHT l -4 5 0 0.8 0.8 0.8\nAMBIENT 0.4 0.4 0.4\nBACK 0.1 0.2 0.3",
+    );
+    (scene.width, scene.height) = (120, 120);
+    for side in [1, 2] {
+        let settings = Settings { samples: side, ..Settings::classic() };
+        let effects = Effects::of(&scene, &settings);
+        let (expected, _) = cpu_picture::<f64>(&scene, &settings, &effects);
+        let (picture, _) = gpu_picture(&gpu, Tier::Double, &scene, &settings, &effects);
+        assert!(picture == expected, "{side}");
+        // (3/4)(3/5, 4/5) lies on the grid of pixels, of which the ball covers a disc of radius 3/4.
+        let touched: Vec<_> = [[45, 60], [75, 24], [105, 60], [60, 105], [60, 60]].to_vec();
+        let backend = Backend::Device(&gpu, Tier::Double);
+        let mut engine = Engine::<Pixels>::with(backend, &scene, &settings, &effects, &Options::default()).unwrap();
+        let mut colors = vec![[0; 3]; touched.len()];
+        engine.pixels(&touched, &mut colors).unwrap();
+        for (&[x, y], color) in touched.iter().zip(colors) {
+            assert_eq!(color, expected.pixel(x, y), "{side}: {x} {y}");
+        }
+    }
 }

@@ -36,11 +36,11 @@ impl GpuRenderer<'_, Pixels> {
             let most = work.capacity.min(self.tiles_per_dispatch) as usize * TILE_PIXELS;
             let end = list.len().min(start + most);
             let took = self.dispatch(&work, &list[start..end])?;
-            let statuses = self.read_list(&work, &covered[start..end], colors)?;
-            if self.walks_at_once_instead(statuses) {
+            let statuses = self.read_list(&work, &covered[start..end], pixels, colors)?;
+            if self.walks_at_once_instead(&statuses) {
                 continue;
             }
-            rendered.not_finite += statuses.checked(self.gpu)?;
+            rendered.add(statuses.checked(self.gpu)?);
             self.add_rays(&work, end - start, |_| true)?;
             self.work = Some(work);
             self.set_pace((end - start).div_ceil(TILE_PIXELS), took);
@@ -51,14 +51,20 @@ impl GpuRenderer<'_, Pixels> {
     }
 
     /// Puts the pixels of the last dispatch to their places in `colors`.
-    fn read_list(&mut self, work: &Work, places: &[usize], colors: &mut [[u8; 3]]) -> Result<Statuses, Error> {
+    fn read_list(
+        &mut self,
+        work: &Work,
+        places: &[usize],
+        pixels: &[[u32; 2]],
+        colors: &mut [[u8; 3]],
+    ) -> Result<Statuses, Error> {
         let start = Instant::now();
         let statuses = work.pixels.read(self.gpu, places.len(), |values| {
             let mut statuses = Statuses::default();
             for (value, &place) in values.iter().zip(places) {
                 let [r, g, b, status] = value.to_le_bytes();
                 colors[place] = [r, g, b];
-                statuses.add(status);
+                statuses.add(status, pixels[place]);
             }
             statuses
         })?;

@@ -2,37 +2,43 @@
 
 use rayon::prelude::*;
 
-use super::TILE_PIXELS;
+use super::{Rendered, TILE_PIXELS};
 use crate::gpu::device::Gpu;
 use crate::gpu::error::Error;
 use crate::tiles::TILE;
 
 /// How many pixels say what of themselves: `STATUS_*` of `shaders/quantize.wgsl`.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Default)]
 pub(super) struct Statuses {
-    not_finite: u64,
+    rendered: Rendered,
     cut: u64,
 }
 
 impl Statuses {
-    pub(super) fn add(&mut self, status: u8) {
-        self.not_finite += u64::from(status & 1 != 0);
+    /// What the pixel in this column and row says.
+    pub(super) fn add(&mut self, status: u8, pixel: [u32; 2]) {
         self.cut += u64::from(status & 2 != 0);
+        if status & 4 != 0 {
+            self.rendered.tangents.push(pixel);
+        } else {
+            self.rendered.not_finite += u64::from(status & 1 != 0);
+        }
     }
 
-    fn plus(self, other: Self) -> Self {
-        Self { not_finite: self.not_finite + other.not_finite, cut: self.cut + other.cut }
+    fn plus(mut self, other: Self) -> Self {
+        self.rendered.add(other.rendered);
+        Self { cut: self.cut + other.cut, ..self }
     }
 
-    /// Whether the device may have left out something. Of several samples those that are cut are no numbers.
-    pub(super) fn may_be_cut(self, samples: u64) -> bool {
-        self.cut > 0 || (samples > 1 && self.not_finite > 0)
+    /// Whether the device has left out something.
+    pub(super) fn is_cut(&self) -> bool {
+        self.cut > 0
     }
 
-    /// How many are not finite; an error where the device has left out something.
-    pub(super) fn checked(self, gpu: &Gpu) -> Result<u64, Error> {
+    /// What they say together; an error where the device has left out something.
+    pub(super) fn checked(self, gpu: &Gpu) -> Result<Rendered, Error> {
         match self.cut {
-            0 => Ok(self.not_finite),
+            0 => Ok(self.rendered),
             cut => Err(Error::NoDevice(format!(
                 "{cut} pixels need more turns of a loop than {} has for them; `--device cpu` has no such limit",
                 gpu.info
@@ -53,12 +59,12 @@ pub(super) fn place_tiles(pixels: &[u32], tiles: &[[u32; 2]], first: u32, width:
         for (tile, pixels) in by_row[start..].iter().take_while(|(tile, _)| tile[1] == y) {
             let across = TILE.min(width - tile[0]) as usize;
             let lines = pixels.chunks(TILE as usize).skip(above as usize);
-            for (row, pixels) in band.chunks_mut(row_bytes).zip(lines) {
+            for (j, (row, pixels)) in (y + above..).zip(band.chunks_mut(row_bytes).zip(lines)) {
                 let row = &mut row[tile[0] as usize * 3..][..across * 3];
-                for (target, pixel) in row.as_chunks_mut::<3>().0.iter_mut().zip(pixels) {
+                for (i, (target, pixel)) in (tile[0]..).zip(row.as_chunks_mut::<3>().0.iter_mut().zip(pixels)) {
                     let [r, g, b, status] = pixel.to_le_bytes();
                     *target = [r, g, b];
-                    statuses.add(status);
+                    statuses.add(status, [i, j]);
                 }
             }
         }

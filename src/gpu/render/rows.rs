@@ -25,7 +25,7 @@ impl GpuRenderer<'_, Rows> {
         let mut rendered = Rendered::default();
         for (start, rgb) in (first..first + count).step_by(most as usize).zip(rgb.chunks_mut(row_bytes * most as usize))
         {
-            rendered.not_finite += self.band(start, rgb)?.not_finite;
+            rendered.add(self.band(start, rgb)?);
         }
         self.pixels += u64::from(self.size.0) * u64::from(count);
         Ok(rendered)
@@ -52,10 +52,10 @@ impl GpuRenderer<'_, Rows> {
             let now = &dealt(now, self.hands);
             let took = self.dispatch(&work, now)?;
             let statuses = self.read_tiles(&work, now, first, rgb)?;
-            if self.walks_at_once_instead(statuses) {
+            if self.walks_at_once_instead(&statuses) {
                 continue;
             }
-            rendered.not_finite += statuses.checked(self.gpu)?;
+            rendered.add(statuses.checked(self.gpu)?);
             let end = [self.size.0, first + count];
             self.add_rays(&work, now.len() * TILE_PIXELS, |place| {
                 let ([left, top], place) = (now[place / TILE_PIXELS], (place % TILE_PIXELS) as u32);
