@@ -74,28 +74,8 @@ struct Outcome {
 }
 
 impl Trial<'_> {
-    /// TEMP
-    pub fn ratio(&self, i: u32, j: u32, color: DVec3) -> Option<f64> {
-        let mut paths = Paths::new(self, i, j, 0);
-        let outcome = paths.next()?;
-        if !paths.is_exhausted() || outcome.shade.constant.is_some() {
-            return None;
-        }
-        let (low, high) = (outcome.shade.low, outcome.shade.high);
-        let exact = self.reference.color(i, j)?;
-        let up = (color - exact) / (high - exact);
-        let down = (exact - color) / (exact - low);
-        let r = up.max(down);
-        Some(r.max_element())
-    }
-
     /// Whether rounding explains `level`, another renderer's 8-bit value of pixel (column `i`, row `j`).
     pub fn explain(&self, i: u32, j: u32, level: [u8; 3]) -> Finding {
-        if std::env::var("DBG").is_ok_and(|v| v == format!("{i},{j}")) {
-            for o in Paths::new(self, i, j, 0) {
-                eprintln!("{o:?} {:?} {:?}", o.shade.levels(self.reference.quantize, self.roundoff), level);
-            }
-        }
         let count = self.reference.primaries(i, j).count();
         if count == 1 {
             let mut paths = Paths::new(self, i, j, 0);

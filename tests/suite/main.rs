@@ -14,6 +14,7 @@ mod cli;
 mod compare;
 mod drivers;
 mod effects;
+mod explain;
 mod export;
 mod film;
 mod golden;
