@@ -94,12 +94,7 @@ impl Contents {
             semi_axes: axes.reduce(|(a, b), (c, d)| (a.min(c), b.max(d))).map(|(low, high)| [low, high]),
             refractive_spheres: scene.spheres.iter().filter(|sphere| sphere.kt != 0.0).count(),
             output: scene.output.clone(),
-            precision: Selection::of(
-                &settings.view.relative(scene),
-                &effects,
-                precision::Request::default(),
-                &Tier::ALL,
-            ),
+            precision: Selection::of(scene, settings, &effects, precision::Request::default(), &Tier::ALL),
             effects,
         }
     }

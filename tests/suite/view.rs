@@ -225,7 +225,7 @@ pub(crate) fn rendered(gpu: Option<&Gpu>, scene: &Scene, wishes: &Wishes) -> Vec
     let effects = Effects::requested(&scene, &settings, &wishes.effects);
     let backend = gpu.map_or(Backend::Reference, |gpu| {
         let relative = settings.view.relative(&scene);
-        Backend::Device(gpu, Selection::of(&relative, &effects, wishes.precision, gpu.ladder()).tier)
+        Backend::Device(gpu, Selection::of(&scene, &settings, &effects, wishes.precision, gpu.ladder()).tier)
     });
     render_picture(&mut Engine::new(backend, &scene, &settings, &effects).unwrap()).unwrap().0
 }
