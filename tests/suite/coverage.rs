@@ -57,19 +57,19 @@ fn covered_pictures_differ_from_double_in_one_pixel_of_ten_thousand() {
                     let (share, says) = (demand.share[tier as usize].value, why.as_deref().unwrap_or("covers"));
                     println!(
                         "{case}: {} differ, {} by more than 1; {share:.1e}; {says}",
-                        differing.any, differing.over_1
+                        differing.over_0, differing.over_1
                     );
                 }
                 if why.is_some() {
                     continue;
                 }
                 let (covered, pixels, all) = &mut sums[tier as usize];
-                (*covered, *pixels, *all) = (*covered + 1, *pixels + expected.pixel_count(), *all + differing.any);
+                (*covered, *pixels, *all) = (*covered + 1, *pixels + expected.pixel_count(), *all + differing.over_0);
                 let reference = Reference::new(&scene, settings, &effects);
                 let judge = Backend::Device(&gpu, tier).judge();
                 let unexplained = Explanation::of(&picture, expected, &reference, &judge).unexplained;
-                if differing.any > limit(expected.pixel_count(), is_whole) || unexplained > 0 || not_finite > 0 {
-                    wrong.push(format!("{case}: {} differ, {unexplained} unexplained", differing.any));
+                if differing.over_0 > limit(expected.pixel_count(), is_whole) || unexplained > 0 || not_finite > 0 {
+                    wrong.push(format!("{case}: {} differ, {unexplained} unexplained", differing.over_0));
                 }
             }
         }
