@@ -10,6 +10,10 @@ use super::spread::Shade;
 /// Choices of paths that are tried at the most.
 const MAX_TRIED: usize = 10_000;
 
+/// Roundings of a mean beyond those of its sum, which is one of differences to the first sample: none of these is rounded by more than the
+/// greatest sample is, and then follow a quotient and a sum.
+const MEAN: f64 = 8.0;
+
 /// The search for an outcome of each sample.
 pub(super) struct Sums<'a, H> {
     trial: &'a Trial<'a>,
@@ -19,13 +23,15 @@ pub(super) struct Sums<'a, H> {
     samples: Vec<Vec<Outcome>>,
     /// From each sample on, the least and the greatest sum of the rest.
     rest: Vec<[DVec3; 2]>,
+    /// The greatest size of any sample's colour.
+    greatest: DVec3,
     tried: usize,
 }
 
 impl<'a, H: Fn(&Shade) -> bool> Sums<'a, H> {
     /// Whether a choice of paths explains the value that `holds` knows.
     pub(super) fn search(trial: &'a Trial<'a>, mut paths: Vec<Paths>, holds: H) -> Finding {
-        let mut sums = Self { trial, holds, samples: Vec::new(), rest: Vec::new(), tried: 0 };
+        let mut sums = Self { trial, holds, samples: Vec::new(), rest: Vec::new(), greatest: DVec3::ZERO, tried: 0 };
         // Mostly none has to be taken otherwise.
         let mut samples: Vec<Vec<Outcome>> = paths.iter_mut().map(|paths| paths.by_ref().take(1).collect()).collect();
         sums.set(samples.clone());
@@ -53,6 +59,7 @@ impl<'a, H: Fn(&Shade) -> bool> Sums<'a, H> {
         for (index, outcomes) in samples.iter().enumerate().rev() {
             let low = outcomes.iter().map(|o| o.shade.low).fold(DVec3::INFINITY, DVec3::min);
             let high = outcomes.iter().map(|o| o.shade.high).fold(DVec3::NEG_INFINITY, DVec3::max);
+            self.greatest = self.greatest.max(low.abs()).max(high.abs());
             let [rest_low, rest_high] = self.rest[index + 1];
             self.rest[index] = [rest_low + low, rest_high + high];
         }
@@ -88,10 +95,8 @@ impl<'a, H: Fn(&Shade) -> bool> Sums<'a, H> {
             return (self.holds)(&first);
         }
         let count = self.samples.len() as f64;
-        // Each addition of a difference to the first sample rounds it and a sum that is no greater than that of all.
-        let rounding = 2.0 * count * self.trial.roundoff.shading;
-        let (low, high) = (low / count, high / count);
-        let shade = Shade { low: low - low.abs() * rounding, high: high + high.abs() * rounding, constant: None };
+        let rounding = self.greatest * ((count + MEAN) * self.trial.roundoff.shading);
+        let shade = Shade { low: low / count - rounding, high: high / count + rounding, constant: None };
         (self.holds)(&shade)
     }
 }
