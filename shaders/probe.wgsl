@@ -23,10 +23,11 @@ fn probe_vector(at: u32) -> vec3r {
 fn probe_own(words: vec4<u32>) -> Own {
     first_of_range = words.x;
     end_of_range = words.y;
-    if words.w == 0u {
-        return Own(NO_SHAPE, false, vec3r());
+    var own = Own(NO_SHAPE, false, vec3r());
+    if words.w != 0u {
+        own.shape = shapes[words.w - 1u].index;
     }
-    return Own(shapes[words.w - 1u].index, false, vec3r());
+    return own;
 }
 
 fn probe_hit(ray: Ray, words: vec4<u32>) -> Hit {

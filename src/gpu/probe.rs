@@ -13,6 +13,9 @@ use super::pack::{bytes, low_light, low_shape, shape_value};
 use super::pipeline::Specialisation;
 use super::readable::Readable;
 use super::shader::{Kernel, Module, Places, Slots, Storage, Walk};
+use super::spirv::Parsed;
+use super::stage::Access::{Read, ReadWrite, Uniform};
+use super::stage::{Access, Resource, Stage};
 use crate::camera::NEAR_T_MIN;
 use crate::effects::EffectSet;
 use crate::geometry::{Ellipsoid, range_factor, shape_indices};
@@ -139,21 +142,18 @@ impl Question {
         }
     }
 
-    /// Bindings that the entry point reads, as in `shaders/`; with those for the low parts.
-    fn bindings(self, low: bool) -> Vec<u32> {
+    /// What the entry point reads and writes, as in `shaders/`; with the low parts.
+    fn bindings(self, low: bool) -> Vec<(u32, Access)> {
         let (plain, more): (&[u32], &[u32]) = match self {
-            Self::Nearest | Self::Blocked => (&[0, 1, 13, 15, 16, 17], &[9, 14]),
-            Self::Lit => (&[0, 1, 2, 3, 13, 15, 16, 17], &[9, 10, 14]),
-            Self::Bounce => (&[0, 1, 2, 13, 15, 16, 17], &[9, 14]),
-            Self::Refract => (&[0, 1, 2, 5, 13, 15, 16, 17], &[9, 14]),
-            Self::Power => (&[13, 16, 17], &[]),
-            Self::Transforms => (&[0, 13, 16, 17], &[]),
+            Self::Nearest | Self::Blocked => (&[1, 13, 15], &[9, 14]),
+            Self::Lit => (&[1, 2, 3, 13, 15], &[9, 10, 14]),
+            Self::Bounce => (&[1, 2, 13, 15], &[9, 14]),
+            Self::Refract => (&[1, 2, 5, 13, 15], &[9, 14]),
+            Self::Power | Self::Transforms => (&[13], &[]),
         };
-        let mut bindings = plain.to_vec();
-        if low {
-            bindings.extend(more);
-        }
-        bindings
+        let more = if low { more } else { &[] };
+        let read = plain.iter().chain(more).map(|&binding| (binding, Read));
+        read.chain([(0, Uniform), (16, ReadWrite), (17, ReadWrite)]).collect()
     }
 }
 
@@ -184,8 +184,8 @@ struct Inputs {
 pub struct Prober<'a> {
     gpu: &'a Gpu,
     kernel: Kernel,
-    module: wgpu::ShaderModule,
-    pipelines: HashMap<Question, wgpu::ComputePipeline>,
+    module: Parsed,
+    stages: HashMap<Question, Stage>,
     busy: Duration,
 }
 
@@ -196,8 +196,8 @@ impl<'a> Prober<'a> {
             Kernel::Tier(tier) => gpu.kernel(tier)?,
             kernel => kernel,
         };
-        let module = gpu.shader_module(&Module::probe(kernel))?;
-        Ok(Self { gpu, kernel, module, pipelines: HashMap::new(), busy: Duration::ZERO })
+        let module = Parsed::new(&Module::probe(kernel)).map_err(Error::Lost)?;
+        Ok(Self { gpu, kernel, module, stages: HashMap::new(), busy: Duration::ZERO })
     }
 
     /// Its kernel.
@@ -252,7 +252,7 @@ impl<'a> Prober<'a> {
     }
 
     fn prepare(&mut self, question: Question) -> Result<(), Error> {
-        if self.pipelines.contains_key(&question) {
+        if self.stages.contains_key(&question) {
             return Ok(());
         }
         let specialisation = Specialisation {
@@ -271,20 +271,10 @@ impl<'a> Prober<'a> {
             samples: 1,
             slots: Slots::Tiles,
         };
-        let pipeline = self.gpu.checked("compiling the probe", || {
-            self.gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(question.entry_point()),
-                layout: None,
-                module: &self.module,
-                entry_point: Some(question.entry_point()),
-                compilation_options: wgpu::PipelineCompilationOptions {
-                    constants: &specialisation.constants(),
-                    zero_initialize_workgroup_memory: false,
-                },
-                cache: None,
-            })
-        })?;
-        self.pipelines.insert(question, pipeline);
+        let bindings = question.bindings(self.kernel.carries_low());
+        let constants = specialisation.constants();
+        let stage = Stage::new(self.gpu, &self.module, question.entry_point(), &constants, &bindings)?;
+        self.stages.insert(question, stage);
         Ok(())
     }
 
@@ -296,22 +286,21 @@ impl<'a> Prober<'a> {
         first: u32,
         answers: &mut Vec<Answer>,
     ) -> Result<(), Error> {
-        let Some(pipeline) = self.pipelines.get(&question) else { return Ok(()) };
+        let Some(stage) = self.stages.get(&question) else { return Ok(()) };
         let gpu = self.gpu;
         let padded = count.next_multiple_of(GROUP);
         let real = if self.kernel.is_double() { 8 } else { 4 };
         let params = if self.kernel.is_double() { params::<double::Layout>() } else { params::<single::Layout>() };
         let flags = Readable::new(gpu, padded as u64 * 2);
         let values = Readable::new(gpu, (padded * real / 4) as u64);
-        let wanted = question.bindings(self.kernel.carries_low());
-        let buffers = gpu.checked("reserving buffers", || {
+        let group = gpu.checked("reserving buffers", || {
             let buffer = |(binding, contents, usage): (u32, &[u8], wgpu::BufferUsages)| {
                 let contents = if contents.is_empty() { &[0; 256] } else { contents };
                 let descriptor = wgpu::util::BufferInitDescriptor { label: None, contents, usage };
-                (binding, gpu.device.create_buffer_init(&descriptor))
+                (binding, Resource::Buffer(gpu.device.create_buffer_init(&descriptor)))
             };
             let storage = wgpu::BufferUsages::STORAGE;
-            let all: [(u32, &[u8], wgpu::BufferUsages); 10] = [
+            let inputs: [(u32, &[u8], wgpu::BufferUsages); 10] = [
                 (0, &params, wgpu::BufferUsages::UNIFORM),
                 (1, &inputs.shapes, storage),
                 (2, &inputs.materials, storage),
@@ -323,31 +312,12 @@ impl<'a> Prober<'a> {
                 (14, &inputs.reals_low, storage),
                 (15, bytemuck::cast_slice(&inputs.words), storage),
             ];
-            all.into_iter().filter(|(binding, ..)| wanted.contains(binding)).map(buffer).collect::<Vec<_>>()
+            let outputs = [(16, &flags), (17, &values)];
+            let outputs = outputs.map(|(binding, output)| (binding, Resource::Buffer(output.buffer.clone())));
+            stage.bind(gpu, &inputs.into_iter().map(buffer).chain(outputs).collect::<Vec<_>>())
         })?;
-        let outputs = [(16, &flags.buffer), (17, &values.buffer)];
-        let entries: Vec<_> = buffers
-            .iter()
-            .map(|(binding, buffer)| (*binding, buffer))
-            .chain(outputs)
-            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
-            .collect();
-        let bind_group = gpu.checked("binding the probe's buffers", || {
-            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: None,
-                layout: &pipeline.get_bind_group_layout(0),
-                entries: &entries,
-            })
-        })?;
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, &bind_group, &[]);
-            pass.dispatch_workgroups((padded / GROUP) as u32, 1, 1);
-        }
         let start = Instant::now();
-        gpu.queue.submit([encoder.finish()]);
+        stage.dispatch(gpu, &group, [(padded / GROUP) as u32, 1]);
         gpu.wait()?;
         self.busy += start.elapsed();
         let flags = flags.read(gpu, count * 2, <[u32]>::to_vec)?;
