@@ -22,3 +22,4 @@ pub use margin::{Decision, Judge};
 pub use real::Real;
 pub use render::{Reference, Tally};
 pub use seen::{Seen, seen_through};
+pub(crate) use vec3::Vec3;

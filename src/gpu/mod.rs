@@ -30,7 +30,7 @@ pub use device::{Choice, DeviceInfo, Gpu, list};
 pub use echo::echo_layout;
 pub use error::Error;
 pub use pipeline::{SEE_SAMPLES, SEE_TILES, SHADE_PATHS, Specialisation, WALK_PATHS};
-pub use probe::{Answer, Batch, ProbeRay, Prober, Question, RawBatch, Surface};
+pub use probe::{Answer, Batch, Point, ProbeRay, Prober, Question, RawBatch, Surface};
 pub use reconstruct::Reconstructor;
 pub use render::{DeviceTimes, GpuRenderer};
 pub use selftest::SelfTest;

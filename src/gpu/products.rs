@@ -5,7 +5,7 @@
 
 use std::collections::HashMap;
 
-use rspirv::dr::{Instruction, Module, Operand};
+use rspirv::dr::{Function, Instruction, Module, Operand};
 use rspirv::spirv::{GlslStd450Op, Op};
 
 /// Puts (x + y) + z of the products of the components in the place of a · b, and a.yzx b.zxy − a.zxy b.yzx in that of a × b.
@@ -13,7 +13,7 @@ pub(super) fn expand_products(module: &mut Module) {
     let Some(header) = &mut module.header else { return };
     let typed = |it: &Instruction| it.result_id.zip(it.result_type);
     let globals = module.types_global_values.iter();
-    let locals = module.functions.iter().flat_map(|function| function.all_inst_iter());
+    let locals = module.functions.iter().flat_map(Function::all_inst_iter);
     let types = globals.clone().chain(locals).filter_map(typed).collect();
     let sizes = globals.filter(|it| it.class.opcode == Op::TypeVector).filter_map(|it| it.result_id.zip(size_of(it)));
     let mut expansion = Expansion { types, sizes: sizes.collect(), next_id: header.bound };
