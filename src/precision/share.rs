@@ -55,7 +55,7 @@ const PARTS: Parts = Parts {
     light: 0.7,
     color: 1.0,
     mirrored: [1.0, 7.0],
-    turn: 0.35,
+    turn: 0.45,
     images: 0.5,
 };
 
