@@ -112,6 +112,13 @@ fn pair_quotient(a: Pair, b: Pair) -> Pair {
     return fast_two_sum(high, low);
 }
 
+fn pair_quotient3(a: Pair3, b: Pair) -> Pair3 {
+    let high = a.hi / b.hi;
+    let product = two_product3(high, vec3<f32>(b.hi));
+    let low = ((a.hi - product.hi) - product.lo + (a.lo - high * b.lo)) / b.hi;
+    return fast_two_sum3(high, low);
+}
+
 // a . b as if in twice the precision (Ogita, Rump, Oishi, "Accurate sum and dot product", 2005, algorithm Dot2).
 fn pair_dot(a: Pair3, b: Pair3) -> Pair {
     let products = two_product3(a.hi, b.hi);

@@ -146,7 +146,7 @@ fn local_hit(ray: Ray, body: Body, hit: Hit) -> Point {
     let discriminant = Pair(max(at.discriminant.hi, 0.0), select(0.0, at.discriminant.lo, at.discriminant.hi > 0.0));
     let root = pair_square_root(discriminant);
     let half_chord = pair_scaled3(at.direction, Pair(select(-root.hi, root.hi, hit.inside), select(-root.lo, root.lo, hit.inside)));
-    return pair_scaled3(pair_sum3(perpendicular, half_chord), pair_quotient(Pair(1.0, 0.0), at.a));
+    return pair_quotient3(pair_sum3(perpendicular, half_chord), at.a);
 }
 
 // The place of a point of the sphere's surface, given in object space.

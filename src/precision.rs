@@ -1,10 +1,10 @@
 //! The precision ladder: what each tier promises, what a scene demands, and which tier covers it.
 
-use std::borrow::Cow;
 use std::fmt;
 use std::str::FromStr;
 
 use glam::DVec3;
+use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::brightness::{Brightness, Scalar};
@@ -12,7 +12,12 @@ use crate::effects::{Effect, Effects};
 use crate::geometry::Units;
 use crate::limits;
 use crate::scene::Scene;
-use crate::settings::Secondary;
+use crate::settings::{Secondary, Settings};
+
+mod outline;
+mod share;
+
+use share::Shares;
 
 /// A kernel of the GPU path, by what it promises.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
@@ -71,17 +76,12 @@ impl fmt::Display for Request {
 /// What a tier covers; beyond it the tier promises nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Promise {
-    /// Greatest distance of the eye from a sphere, in least semi-axes of the sphere.
-    pub distance: f64,
-    /// The same for any other surface, where shadow and reflection rays start: an error there moves the edge of a shadow or
-    /// of a mirror image by a part of the sphere's radius, not the edge of the sphere itself.
-    pub secondary_distance: f64,
-    /// Least distance of the eye or a light from a surface, in semi-axes.
+    /// Greatest share of the pixels that rounding is expected to change.
+    pub share: f64,
+    /// Least distance of the eye or a light from a surface, in parts of the coordinates that it is the difference of.
     pub nearness: f64,
     /// Greatest ratio of a sphere's semi-axes.
     pub axis_ratio: f64,
-    /// Least gap between two spheres of which one is around the other, in radii.
-    pub gap: f64,
     /// Greatest specular exponent.
     pub exponent: f64,
     /// Greatest coordinate of a sphere or of a light that casts shadows, seen from the eye, in least semi-axes of any sphere: squares
@@ -91,36 +91,33 @@ pub struct Promise {
     pub brightness: f64,
 }
 
+/// One pixel in so many is what a tier may differ by.
+const MAX_SHARE: f64 = 1e-4;
+
 impl Tier {
     /// What the tier covers.
     pub fn promise(self) -> Promise {
         match self {
             Self::Fast => Promise {
-                distance: 1e3,
-                secondary_distance: 1e4,
-                nearness: 1e-2,
-                axis_ratio: 1e4,
-                gap: 1e-5,
+                share: MAX_SHARE,
+                nearness: 1e-6,
+                axis_ratio: 1e5,
                 exponent: 1e6,
                 reach: 1e15,
                 brightness: Scalar::Single.max_brightness(),
             },
             Self::Robust => Promise {
-                distance: 1e7,
-                secondary_distance: 1e7,
-                nearness: 1e-7,
-                axis_ratio: 1e4,
-                gap: 1e-6,
+                share: MAX_SHARE,
+                nearness: 2e-8,
+                axis_ratio: 1e5,
                 exponent: 1e6,
                 reach: 1e15,
                 brightness: Scalar::Single.max_brightness(),
             },
             Self::Double => Promise {
-                distance: 1e9,
-                secondary_distance: 1e9,
+                share: MAX_SHARE,
                 nearness: 1e-12,
                 axis_ratio: 1e6,
-                gap: 1e-13,
                 exponent: 1e12,
                 reach: f64::INFINITY,
                 brightness: Scalar::Double.max_brightness(),
@@ -132,16 +129,12 @@ impl Tier {
 /// How hard a scene is, in the terms of [`Promise`]; each with the sphere that makes it so.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Demand {
-    /// Greatest distance of the eye from a sphere, in least semi-axes.
-    pub distance: Extreme,
-    /// Greatest distance of a surface from a sphere, in least semi-axes of the latter.
-    pub secondary_distance: Extreme,
-    /// Least distance of the eye or a light from a surface, in semi-axes.
+    /// For each tier the share of the pixels that rounding is expected to change, with the sphere that adds most to it.
+    pub share: [Extreme; 3],
+    /// Least distance of the eye or a light from a surface, in parts of the coordinates that it is the difference of.
     pub nearness: Extreme,
     /// Greatest ratio of semi-axes.
     pub axis_ratio: Extreme,
-    /// Least gap of nested surfaces, in radii.
-    pub gap: Extreme,
     /// Greatest specular exponent.
     pub exponent: Extreme,
     /// Greatest coordinate of a sphere or of a light that casts shadows, in least semi-axes of any sphere.
@@ -175,70 +168,80 @@ impl Extreme {
 
 /// Pairs of spheres are searched for nested surfaces up to this many spheres; beyond, each against its successor.
 const MAX_PAIRWISE: usize = 2000;
+/// Spheres that one thread looks at in turn.
+const CHUNK: usize = 4096;
 
 impl Demand {
     /// What `scene` demands where `effects` are simulated.
-    pub fn of(scene: &Scene, effects: &Effects) -> Self {
+    pub fn of(scene: &Scene, settings: &Settings, effects: &Effects) -> Self {
         // The brightness aside, all of it is the same in any units: in those of kernels no square leaves the range.
-        let scene = &*Units::of(scene, Secondary::EXACT).applied_to(Cow::Borrowed(scene));
+        let scene = settings.view.relative(scene);
+        let scene = &*Units::of(&scene, Secondary::EXACT).applied_to(scene);
         let (brightness, reach) = (Brightness::of(scene, effects), limits::reach(scene, effects));
-        let least = Extreme { value: 0.0, sphere: None };
-        let greatest = Extreme { value: f64::INFINITY, sphere: None };
-        let mut demand = Self {
-            distance: least,
-            secondary_distance: least,
-            nearness: greatest,
-            axis_ratio: least,
-            gap: greatest,
-            exponent: least,
-            reach: least,
-            brightness: Extreme { value: brightness.greatest(), sphere: brightness.sphere },
+        let count = scene.spheres.len();
+        let chunk = |chunk: usize| {
+            let mut demand = Self::none();
+            (chunk * CHUNK..count.min((chunk + 1) * CHUNK)).for_each(|index| demand.add(scene, effects, reach, index));
+            demand
         };
-        // Secondary rays start on any surface.
-        let secondary = effects.set.has_secondary_rays();
-        let bounds = scene.spheres.iter().map(|s| (s.center - s.scale.abs(), s.center + s.scale.abs()));
-        let (low, high) = bounds.reduce(|(a, b), (c, d)| (a.min(c), b.max(d))).unwrap_or_default();
-        let lights = scene.lights.iter().filter(|_| effects.set.has(Effect::Shadows)).map(|light| light.position);
-        let origins: Vec<DVec3> = std::iter::once(DVec3::ZERO).chain(lights).collect();
-
-        for (index, sphere) in scene.spheres.iter().enumerate() {
-            let scale = sphere.scale.abs();
-            let (short, long) = (scale.min_element(), scale.max_element());
-            demand.axis_ratio.raise(long / short, index);
-            if effects.set.has(Effect::Specular) && sphere.ks != 0.0 {
-                demand.exponent.raise(sphere.n, index);
-            }
-            demand.distance.raise(sphere.center.length() / short, index);
-            if secondary && scene.spheres.len() > 1 {
-                let corner = (sphere.center - low).abs().max((sphere.center - high).abs());
-                demand.secondary_distance.raise(corner.length() / short, index);
-            }
-            demand.reach.raise(reach / short, index);
-            for origin in &origins {
-                let height = ((*origin - sphere.center) / scale).length() - 1.0;
-                demand.nearness.lower(height.abs(), index);
-            }
+        let demand = (0..count.div_ceil(CHUNK)).into_par_iter().map(chunk).reduce(Self::none, |a, b| a.and(&b));
+        Self {
+            share: Shares::new(scene, settings.view.axes(), effects).estimate(&nested(scene)),
+            brightness: Extreme { value: brightness.greatest(), sphere: brightness.sphere },
+            ..demand
         }
-        demand.find_gaps(scene);
-        demand
     }
 
-    /// Nested surfaces: nearly concentric spheres whose radii differ by little; equal ones are one surface.
-    fn find_gaps(&mut self, scene: &Scene) {
-        let spheres = &scene.spheres;
-        let mut pair = |i: usize, j: usize| {
-            let (a, b) = (&spheres[i], &spheres[j]);
-            let size = a.scale.abs().max_element();
-            let offset = (a.center - b.center).length() / size;
-            let gap = (a.scale.abs() - b.scale.abs()).abs().max_element() / size;
-            if offset < 0.1 && gap < 0.1 && (offset > 0.0 || gap > 0.0) {
-                self.gap.lower(gap.max(offset), j);
+    /// Of no sphere.
+    fn none() -> Self {
+        let least = Extreme { value: 0.0, sphere: None };
+        Self {
+            share: [least; 3],
+            nearness: Extreme { value: f64::INFINITY, sphere: None },
+            axis_ratio: least,
+            exponent: least,
+            reach: least,
+            brightness: least,
+        }
+    }
+
+    /// What a sphere demands by itself.
+    fn add(&mut self, scene: &Scene, effects: &Effects, reach: f64, index: usize) {
+        let sphere = &scene.spheres[index];
+        let scale = sphere.scale.abs();
+        let (short, long) = (scale.min_element(), scale.max_element());
+        self.axis_ratio.raise(long / short, index);
+        self.reach.raise(reach / short, index);
+        if effects.set.has(Effect::Specular) && sphere.ks != 0.0 {
+            self.exponent.raise(sphere.n, index);
+        }
+        let coordinates = sphere.center.length() + long;
+        let mut add_nearness = |origin: DVec3| {
+            let height = ((origin - sphere.center) / scale).length() - 1.0;
+            self.nearness.lower(height.abs() * short / (coordinates + origin.length()), index);
+        };
+        add_nearness(DVec3::ZERO);
+        if effects.set.has(Effect::Shadows) {
+            for light in &scene.lights {
+                add_nearness(light.position);
+            }
+        }
+    }
+
+    /// Of the spheres of both.
+    fn and(mut self, other: &Self) -> Self {
+        let greater = |mine: &mut Extreme, other: Extreme| {
+            if let Some(sphere) = other.sphere {
+                mine.raise(other.value, sphere);
             }
         };
-        for i in 0..spheres.len() {
-            let last = if spheres.len() <= MAX_PAIRWISE { spheres.len() } else { (i + 2).min(spheres.len()) };
-            (i + 1..last).for_each(|j| pair(i, j));
+        greater(&mut self.axis_ratio, other.axis_ratio);
+        greater(&mut self.exponent, other.exponent);
+        greater(&mut self.reach, other.reach);
+        if let Some(sphere) = other.nearness.sphere {
+            self.nearness.lower(other.nearness.value, sphere);
         }
+        self
     }
 
     /// The first demand that `tier` does not cover, in words; `None` where it covers all.
@@ -256,34 +259,62 @@ impl Demand {
             (demand.value < limit)
                 .then(|| format!("{what} {:.3e} of {} is below {limit:.0e}", demand.value, name(demand)))
         };
-        above("eye distance over radius", &self.distance, promise.distance)
-            .or_else(|| {
-                above("distance of a surface over radius", &self.secondary_distance, promise.secondary_distance)
-            })
-            .or_else(|| below("nearness of an origin to the surface", &self.nearness, promise.nearness))
+        let share = &self.share[tier as usize];
+        let too_many = !(share.value <= promise.share);
+        let pixels = || {
+            let most = if share.sphere.is_some() { format!(", most by {}", name(share)) } else { String::new() };
+            format!("rounding changes about one pixel in {:.0}{most}", (1.0 / share.value).max(1.0))
+        };
+        below("nearness of the eye or a light to the surface", &self.nearness, promise.nearness)
             .or_else(|| above("axis ratio", &self.axis_ratio, promise.axis_ratio))
-            .or_else(|| below("gap to a nested surface", &self.gap, promise.gap))
             .or_else(|| above("specular exponent", &self.exponent, promise.exponent))
             .or_else(|| above("greatest coordinate over radius", &self.reach, promise.reach))
             .or_else(|| above("brightness", &self.brightness, promise.brightness))
+            .or_else(|| too_many.then(pixels))
     }
 
     /// The demands, a line.
     pub fn summary(&self) -> String {
-        let Self { distance, secondary_distance, nearness, axis_ratio, gap, exponent, reach, brightness } = self;
+        let Self { share, nearness, axis_ratio, exponent, reach, brightness } = self;
+        let shares = Tier::ALL.map(|tier| format!("{:.1e} at {tier}", share[tier as usize].value));
         format!(
-            "distance/radius {:.3e} (eye), {:.3e} (surfaces), {:.3e} (all), nearness {:.3e}, axis ratio {:.3e}, nested gap {:.3e}, \
-             exponent {}, brightness {:.3e}",
-            distance.value,
-            secondary_distance.value,
-            reach.value,
+            "share of pixels changed by rounding about {}, nearness {:.3e}, axis ratio {:.3e}, exponent {}, distance/radius {:.3e}, \
+             brightness {:.3e}",
+            shares.join(", "),
             nearness.value,
             axis_ratio.value,
-            gap.value,
             exponent.value,
+            reach.value,
             brightness.value
         )
     }
+}
+
+/// Nearly concentric spheres whose radii differ by little, each with the gap in world units; equal ones are one surface.
+fn nested(scene: &Scene) -> Vec<(usize, f64)> {
+    const CLOSE: f64 = 0.1;
+    let spheres = &scene.spheres;
+    let gap_of = |i: usize, j: usize| {
+        let (a, b) = (&spheres[i], &spheres[j]);
+        let size = a.scale.abs().max_element();
+        let offset = (a.center - b.center).length();
+        let gap = (a.scale.abs() - b.scale.abs()).abs().max_element().max(offset);
+        (gap < CLOSE * size && gap > 0.0).then_some((j, gap))
+    };
+    if spheres.len() > MAX_PAIRWISE {
+        return (1..spheres.len()).filter_map(|j| gap_of(j - 1, j)).collect();
+    }
+    // Only spheres whose centres are close along x can be.
+    let mut order: Vec<usize> = (0..spheres.len()).collect();
+    order.sort_unstable_by(|&i, &j| spheres[i].center.x.total_cmp(&spheres[j].center.x));
+    let close_to = |at: usize| {
+        let sphere = &spheres[order[at]];
+        let end = sphere.center.x + CLOSE * (1.0 + CLOSE) * sphere.scale.abs().max_element();
+        order[at + 1..].iter().copied().take_while(move |&j| spheres[j].center.x <= end)
+    };
+    (0..order.len())
+        .flat_map(|at| close_to(at).filter_map(|j| gap_of(order[at].min(j), order[at].max(j))).collect::<Vec<_>>())
+        .collect()
 }
 
 /// The tier that renders a scene, and why.
@@ -301,8 +332,8 @@ pub struct Selection {
 
 impl Selection {
     /// The tier asked for, or the first one of `ladder` whose promise covers `scene`; where none does, `double`.
-    pub fn of(scene: &Scene, effects: &Effects, request: Request, ladder: &[Tier]) -> Self {
-        let demand = Demand::of(scene, effects);
+    pub fn of(scene: &Scene, settings: &Settings, effects: &Effects, request: Request, ladder: &[Tier]) -> Self {
+        let demand = Demand::of(scene, settings, effects);
         let excess = |tier| demand.beyond(tier, scene);
         let (tier, reason) = if let Some(tier) = request.0 {
             let why = excess(tier).map_or_else(|| "covers the scene".into(), |why| format!("not covered: {why}"));

@@ -98,12 +98,7 @@ impl Contents {
             refractive_spheres: scene.spheres.iter().filter(|sphere| sphere.kt != 0.0).count(),
             output: scene.output.clone(),
             refused: limits::problem(scene, settings, &effects),
-            precision: Selection::of(
-                &settings.view.relative(scene),
-                &effects,
-                precision::Request::default(),
-                &Tier::ALL,
-            ),
+            precision: Selection::of(scene, settings, &effects, precision::Request::default(), &Tier::ALL),
             effects,
         }
     }

@@ -192,8 +192,7 @@ impl DeviceOptions {
         settings: &Settings,
         effects: &Effects,
     ) -> Selection {
-        let scene = settings.view.relative(scene);
-        Selection::of(&scene, effects, self.precision, gpu.map_or(&Tier::ALL, Gpu::ladder))
+        Selection::of(scene, settings, effects, self.precision, gpu.map_or(&Tier::ALL, Gpu::ladder))
     }
 }
 

@@ -32,3 +32,4 @@ pub use judge::{Finding, Judge, Trial};
 pub use real::Real;
 pub use render::{Reference, Tally};
 pub use seen::{Seen, seen_through};
+pub(crate) use vec3::Vec3;

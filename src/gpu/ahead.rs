@@ -30,7 +30,7 @@ impl Ahead {
             return None;
         }
         let tuning = Tuning::of(Class::Software);
-        let selection = Selection::of(&settings.view.relative(scene), effects, request, &SOFTWARE_LADDER);
+        let selection = Selection::of(scene, settings, effects, request, &SOFTWARE_LADDER);
         let kernel = Kernel::Tier(selection.tier);
         let (scene, settings) = in_range(scene, settings);
         let grid = Acceleration::grid_of(&scene, effects.set, kernel.rounding(), &tuning.density);

@@ -303,7 +303,7 @@ impl<'g> Easel<'g> {
             return Ok(());
         }
         let ladder = self.gpu.map_or(&Tier::ALL[..], Gpu::ladder);
-        let tier = Selection::of(&settings.view.relative(&part), &effects, wishes.precision, ladder).tier;
+        let tier = Selection::of(&part, &settings, &effects, wishes.precision, ladder).tier;
         let backend = self.gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, tier));
         if self.canvas.size() != size {
             self.canvas = Canvas::new(size);
@@ -335,7 +335,7 @@ impl<'g> Easel<'g> {
         let size = fitted(asked, setting.pixels);
         let effects = Effects::requested(setting.scene, &settings, &wishes.effects);
         let ladder = self.gpu.map_or(&Tier::ALL[..], Gpu::ladder);
-        let selection = Selection::of(&settings.view.relative(setting.scene), &effects, wishes.precision, ladder);
+        let selection = Selection::of(setting.scene, &settings, &effects, wishes.precision, ladder);
         if self.canvas.size() != size {
             self.canvas = Canvas::new(size);
         }

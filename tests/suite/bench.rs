@@ -149,7 +149,7 @@ fn measure(gpu: Option<&Gpu>, families: &[&str], seconds: f64) -> Bench {
         settings: &settings,
         resolution: Some((32, 18)),
         effects: &|scene| Effects::of(scene, &settings),
-        selection: &|scene, effects| Selection::of(scene, effects, precision::Request(None), &Tier::ALL),
+        selection: &|scene, effects| Selection::of(scene, &settings, effects, precision::Request(None), &Tier::ALL),
     };
     let families = families.iter().map(|name| family(name)).collect();
     let plan = Plan { families, max_spheres: 100, runs: 2, seconds, cpu: true };

@@ -52,8 +52,8 @@ fn table() -> Vec<(String, Effect, bool, &'static str)> {
         (
             sphere("s", [0.0, 0.0, -9e5], 9.0, "0 1 0 0 1") + "LIGHT l 0 20 -9e5 1 1 1",
             Effect::Shadows,
-            true,
-            "too far away",
+            false,
+            "convex",
         ),
         (lone("1 0 0 1 1"), Effect::Reflections, false, "alone, convex and seen from outside"),
         (lone("1 0 0 0 1"), Effect::Reflections, false, "no sphere has Kr > 0"),

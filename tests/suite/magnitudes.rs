@@ -35,7 +35,9 @@ fn device(gpu: &Gpu, kernel: Kernel, scene: &Scene, settings: &Settings, roundin
     let effects = Effects::of(scene, settings);
     let mut renderer = GpuRenderer::with_rounding(gpu, scene, settings, &effects, kernel, rounding).ok()?;
     match renderer.rows(0, &mut rgb) {
-        Ok(rendered) => assert_eq!(rendered.not_finite, 0, "{kernel:?}: {:?}", precision::Demand::of(scene, &effects)),
+        Ok(rendered) => {
+            assert_eq!(rendered.not_finite, 0, "{kernel:?}: {:?}", precision::Demand::of(scene, settings, &effects));
+        }
         Err(error) => {
             assert!(error.to_string().contains("turns of a loop"), "{error}");
             return None;
@@ -245,7 +247,7 @@ fn shadows_of_a_far_light_do_not_depend_on_its_distance() {
             let difference = differing(&cpu(&scene, &settings, Rounding::DOUBLE), &expected);
             assert!(difference <= 1, "scene {seed}, 1e{exponent}: {difference}");
             let Some(gpu) = &shared else { continue };
-            let demand = precision::Demand::of(&scene, &effects);
+            let demand = precision::Demand::of(&scene, &settings, &effects);
             for kernel in kernels(gpu) {
                 let Kernel::Tier(tier) = kernel else { continue };
                 if demand.reach.value > tier.promise().reach {
@@ -356,7 +358,7 @@ fn negative_mirrors_alternate_between_white_and_black() {
             assert_eq!(not_finite, 0);
             assert!(expected.rgb().iter().all(|&l| l == level), "{kr}, depth {max_depth}: {level}");
             let Some(gpu) = &shared else { continue };
-            let selection = Selection::of(&scene, &effects, precision::Request(None), gpu.ladder());
+            let selection = Selection::of(&scene, &settings, &effects, precision::Request(None), gpu.ladder());
             let kernel = gpu.kernel(selection.tier).unwrap();
             let picture = device(gpu, kernel, &scene, &settings, kernel.rounding()).unwrap();
             assert!(picture == expected.rgb(), "{kr}, depth {max_depth}, {}", selection.tier);
@@ -400,7 +402,7 @@ fn colours_beyond_single_precision_take_double() {
         assert_eq!(limits::problem(&scene, &settings, &effects), None);
         let (expected, not_finite) = cpu_picture::<f64>(&scene, &settings, &effects);
         assert_eq!(not_finite, 0);
-        let selection = Selection::of(&scene, &effects, precision::Request(None), &Tier::ALL);
+        let selection = Selection::of(&scene, &settings, &effects, precision::Request(None), &Tier::ALL);
         assert_eq!((selection.tier, selection.covered), (Tier::Double, true), "{text}");
         assert!(selection.reason.contains("brightness"), "{}", selection.reason);
         let Some(gpu) = &shared else { continue };

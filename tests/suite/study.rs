@@ -59,7 +59,7 @@ fn tiny() -> Scene {
 
 fn measure(scene: &Scene, gpu: Option<&Gpu>, settings: &Settings) -> Study {
     let effects = |settings: &Settings| Effects::of(scene, settings);
-    let selection = Selection::of(scene, &effects(settings), Request(None), &Tier::ALL);
+    let selection = Selection::of(scene, settings, &effects(settings), Request(None), &Tier::ALL);
     let subject = Subject { name: "tiny, <scene>", scene, settings, effects: &effects, gpu, selection: &selection };
     study(&subject, &Plan { runs: 1, seconds: 0.0, depths: Vec::new(), sides: vec![1, 2] }).unwrap()
 }

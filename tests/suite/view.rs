@@ -223,10 +223,8 @@ pub(crate) fn rendered(gpu: Option<&Gpu>, scene: &Scene, wishes: &Wishes) -> Vec
     (scene.width, scene.height) = wishes.size(&scene);
     let settings = wishes.settings();
     let effects = Effects::requested(&scene, &settings, &wishes.effects);
-    let backend = gpu.map_or(Backend::Reference, |gpu| {
-        let relative = settings.view.relative(&scene);
-        Backend::Device(gpu, Selection::of(&relative, &effects, wishes.precision, gpu.ladder()).tier)
-    });
+    let select = |gpu: &Gpu| Selection::of(&scene, &settings, &effects, wishes.precision, gpu.ladder()).tier;
+    let backend = gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, select(gpu)));
     render_picture(&mut Engine::new(backend, &scene, &settings, &effects).unwrap()).unwrap().0
 }
 
