@@ -4,18 +4,10 @@
 fn nearest_hit(ray: Ray, own: Own, within: Range) -> Hit {
     var range = within;
     var nearest = no_hit();
-    var sphere = first_sphere();
-    if sphere == sphere_count() {
-        return nearest;
-    }
-    loop {
+    for (var sphere = first_sphere(); sphere < sphere_count(); sphere++) {
         let root = accepted_root(ray, body_of(sphere), own, range);
         nearest = nearer_hit(nearest, Hit(true, root.t, sphere, root.inside), root.counts);
         range.t_max = either(range.t_max, root.t, root.counts);
-        sphere++;
-        if sphere == sphere_count() {
-            break;
-        }
     }
     return nearest;
 }
@@ -23,16 +15,8 @@ fn nearest_hit(ray: Ray, own: Own, within: Range) -> Hit {
 // Whether any sphere stands between the ray's origin and the light with this index, at t = 1.
 fn any_hit(ray: Ray, own: Own, light: Light, index: u32, is_asked: bool) -> bool {
     var blocked = false;
-    var sphere = first_sphere();
-    if sphere == sphere_count() {
-        return blocked;
-    }
-    loop {
-        blocked |= blocks(ray, body_of(sphere), own, params.shadow_t_min);
-        sphere++;
-        if sphere == sphere_count() || blocked {
-            break;
-        }
+    for (var sphere = first_sphere(); sphere < sphere_count() && !blocked; sphere++) {
+        blocked = blocks(ray, body_of(sphere), own, params.shadow_t_min);
     }
     return blocked;
 }

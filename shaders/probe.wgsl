@@ -6,7 +6,7 @@
 @group(0) @binding(15) var<storage, read> probe_words: array<vec4<u32>>;
 // Bits of what was found, and the sphere.
 @group(0) @binding(16) var<storage, read_write> probe_flags: array<vec2<u32>>;
-// The root or another real number.
+// The root or another real number; with the point of the hit, POINT_VALUES a ray.
 @group(0) @binding(17) var<storage, read_write> probe_values: array<real>;
 
 const PROBE_FOUND: u32 = 1u;
@@ -23,10 +23,11 @@ fn probe_vector(at: u32) -> vec3r {
 fn probe_own(words: vec4<u32>) -> Own {
     first_of_range = words.x;
     end_of_range = words.y;
-    if words.w == 0u {
-        return Own(NO_SHAPE, false, vec3r());
+    var own = Own(NO_SHAPE, false, vec3r());
+    if words.w != 0u {
+        own.shape = shapes[words.w - 1u].index;
     }
-    return Own(shapes[words.w - 1u].index, false, vec3r());
+    return own;
 }
 
 fn probe_hit(ray: Ray, words: vec4<u32>) -> Hit {
@@ -43,13 +44,45 @@ fn hit_bits(hit: Hit) -> u32 {
         | select(0u, PROBE_FINITE, is_finite(nearest_real(hit.t)));
 }
 
+// Bits and sphere of a hit, and t.
+fn answer(index: u32, at: u32, hit: Hit) {
+    probe_flags[index] = vec2<u32>(hit_bits(hit), hit.sphere);
+    probe_values[at] = nearest_real(hit.t);
+}
+
+fn store(at: u32, v: vec3r) {
+    probe_values[at] = v.x;
+    probe_values[at + 1u] = v.y;
+    probe_values[at + 2u] = v.z;
+}
+
+// Numbers of an answer with the point of the hit.
+const POINT_VALUES: u32 = 13u;
+
+// The same, and the place of the hit, what it carries of it besides, its normal, and the direction in which it mirrors the ray.
+fn answer_with_point(index: u32, ray: Ray, hit: Hit) {
+    let at = POINT_VALUES * index;
+    answer(index, at, hit);
+    let surface = surface_at(ray, hit, material_of(hit.sphere));
+    store(at + 1u, high_of(surface.position));
+    store(at + 4u, low_of(surface.position));
+    store(at + 7u, surface.normal);
+    store(at + 10u, direction_of(reflection_ray(surface)));
+}
+
 // The nearest hit.
 @compute @workgroup_size(64)
 fn probe_nearest(@builtin(global_invocation_id) id: vec3<u32>) {
     params = given_params;
-    let hit = probe_hit(probe_ray(id.x), probe_words[id.x]);
-    probe_flags[id.x] = vec2<u32>(hit_bits(hit), hit.sphere);
-    probe_values[id.x] = nearest_real(hit.t);
+    answer(id.x, id.x, probe_hit(probe_ray(id.x), probe_words[id.x]));
+}
+
+// The nearest hit and its point.
+@compute @workgroup_size(64)
+fn probe_point(@builtin(global_invocation_id) id: vec3<u32>) {
+    params = given_params;
+    let ray = probe_ray(id.x);
+    answer_with_point(id.x, ray, probe_hit(ray, probe_words[id.x]));
 }
 
 // Whether something stands between the origin and t = 1.
@@ -80,7 +113,7 @@ fn probe_lit(@builtin(global_invocation_id) id: vec3<u32>) {
     probe_values[id.x] = n_dot_l;
 }
 
-// The hit after as many reflections as the ray's third word says.
+// The hit after as many reflections as the ray's third word says, and its point.
 @compute @workgroup_size(64)
 fn probe_bounce(@builtin(global_invocation_id) id: vec3<u32>) {
     params = given_params;
@@ -94,11 +127,10 @@ fn probe_bounce(@builtin(global_invocation_id) id: vec3<u32>) {
         own = surface.own;
         hit = nearest_hit(ray, own, reflection_range());
     }
-    probe_flags[id.x] = vec2<u32>(hit_bits(hit), hit.sphere);
-    probe_values[id.x] = nearest_real(hit.t);
+    answer_with_point(id.x, ray, hit);
 }
 
-// The hit after the path of the refraction ray through as many surfaces as the ray's third word says.
+// The hit after the path of the refraction ray through as many surfaces as the ray's third word says, and its point.
 @compute @workgroup_size(64)
 fn probe_refract(@builtin(global_invocation_id) id: vec3<u32>) {
     params = given_params;
@@ -112,8 +144,21 @@ fn probe_refract(@builtin(global_invocation_id) id: vec3<u32>) {
         own = refracted.own;
         hit = nearest_hit(ray, own, refraction_range());
     }
+    answer_with_point(id.x, ray, hit);
+}
+
+// The nearest hit and the specular term of the ray's own light there.
+@compute @workgroup_size(64)
+fn probe_highlight(@builtin(global_invocation_id) id: vec3<u32>) {
+    params = given_params;
+    let ray = probe_ray(id.x);
+    let hit = probe_hit(ray, probe_words[id.x]);
+    let material = material_of(hit.sphere);
+    let surface = surface_at(ray, hit, material);
+    let shadow_ray = ray_to_light(surface.position, light_of(id.x), id.x);
+    let to_light = direction_of(shadow_ray) * (real(1.0) / sqrt(shadow_ray.a));
     probe_flags[id.x] = vec2<u32>(hit_bits(hit), hit.sphere);
-    probe_values[id.x] = nearest_real(hit.t);
+    probe_values[id.x] = specular_term(surface, material, to_light, dot(surface.normal, to_light));
 }
 
 // The specular power of d and n.

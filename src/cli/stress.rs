@@ -5,12 +5,12 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::failure::{BROKEN, Failure, OK, OUTPUT, USAGE};
+use super::failure::{BROKEN, Failure, NO_DEVICE, OK, OUTPUT, USAGE};
 use super::options::open_device;
 use super::output::{out, outln};
 use crate::gpu::{Choice, Gpu, Kernel};
 use crate::precision::Tier;
-use crate::stress::{Class, Row, classes, cost, run as run_classes, table};
+use crate::stress::{Class, Row, Verdict, classes, cost, run as run_classes, table};
 
 /// Arguments of `trueray stress`.
 #[derive(Debug, clap::Args)]
@@ -132,6 +132,14 @@ fn stress(args: &Args) -> Result<u8, Failure> {
             table(std::slice::from_ref(row)).lines().skip(1).for_each(|line| outln!("{line}"));
         }
     })?;
+    // Where every kernel is refused, nothing was checked.
+    let refusals = rows.iter().map(|row| match &row.verdict {
+        Verdict::Refused(why) => Some(why),
+        _ => None,
+    });
+    if let Some(Some(&why)) = refusals.collect::<Option<Vec<_>>>().as_deref().map(<[_]>::first) {
+        return Err(Failure::new(NO_DEVICE, why));
+    }
     let broken = rows.iter().filter(|row| row.is_broken()).count();
     let seconds = start.elapsed().as_secs_f64();
     if args.json {

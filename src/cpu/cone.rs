@@ -303,11 +303,12 @@ impl Witness<f64> for Cone<'_> {
 
         let shading = self.roundoff.shading;
         let angle_error = match world.specular {
-            Specular::Phong => 2.0 * self.normal + light_error + self.path.direction + LENGTH * shading,
-            // The sum of two unit vectors turns by what they turn, over its length.
+            // The mirrored vector turns with what is wrong in the length of the normal, twice as much.
+            Specular::Phong => 2.0 * self.normal + light_error + self.path.direction + 2.0 * LENGTH * shading,
+            // The sum of two unit vectors turns by what they turn and by what is wrong in their lengths, over its own.
             Specular::Blinn => {
                 let sum = length(terms.to_light + surface.view);
-                self.normal + (light_error + self.path.direction + ANGLE * shading) / sum + LENGTH * shading
+                self.normal + (light_error + self.path.direction + 2.0 * LENGTH * shading) / sum + ANGLE * shading
             }
         };
         // 1 − cos α = 2 sin²(½α).
@@ -326,7 +327,7 @@ impl Witness<f64> for Cone<'_> {
     }
 
     fn reflected(&mut self, throughput: f64) {
-        let direction = self.path.direction + 2.0 * self.normal + LENGTH * self.roundoff.shading;
+        let direction = self.path.direction + 2.0 * (self.normal + LENGTH * self.roundoff.shading);
         let ray = self.spread.follow(throughput, self.path.ray, self.mirror);
         self.path = Path { direction, throughput, bounces: self.path.bounces + 1, ray, ..self.path };
     }
@@ -362,7 +363,7 @@ impl Witness<f64> for Cone<'_> {
         };
         let is_total = snell.is_total();
         let direction = if is_total {
-            self.path.direction + 2.0 * self.normal + LENGTH * u
+            self.path.direction + 2.0 * (self.normal + LENGTH * u)
         } else {
             // √k, and where it vanishes what its error leaves of it: the derivatives of the bend r·c − √k by c and by r.
             let root = square.max(square_error).sqrt().max(f64::MIN_POSITIVE);

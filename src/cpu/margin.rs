@@ -25,9 +25,9 @@ pub(super) const LENGTH: f64 = 8.0;
 /// Unit roundoffs of a renderer.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Roundoff {
-    /// Of shading, and of points on a sphere relative to its size.
+    /// Of shading, and of roots.
     pub shading: f64,
-    /// Of inputs, places in the world and intersections.
+    /// Of inputs, places and intersections.
     pub geometry: f64,
 }
 
@@ -101,7 +101,7 @@ impl Margins<'_> {
         let Self { world, ray, path, roundoff } = self;
         let along = t.abs() * length(ray.direction);
         // The start of a ray may be off along its own surface, but lies on it but for rounding.
-        let start = if self.leaves(sphere) { LOCAL * roundoff.shading * size(world, sphere) } else { path.position };
+        let start = if self.leaves(sphere) { LOCAL * roundoff.geometry * size(world, sphere) } else { path.position };
         let place = PLACE * roundoff.geometry * (length(ray.origin) + length(world.shapes[sphere].center) + along);
         self.spread(start, t) + place
     }
@@ -115,7 +115,7 @@ impl Margins<'_> {
         let aside = (from_origin - direction * (along / length)).length();
         // The width at the far end of the ball, and what rounding takes there.
         let far = (along.abs() + radius) / length;
-        let start = self.path.position.max(LOCAL * self.roundoff.shading * radius);
+        let start = self.path.position.max(LOCAL * self.roundoff.geometry * radius);
         let place = PLACE * (origin.length() + center.length() + far * length) + (PLACE + LOCAL) * radius;
         let reach = radius + self.spread(start, far) + self.roundoff.geometry * place;
         // NaN is near.
@@ -168,7 +168,10 @@ impl Margins<'_> {
         let local = own.local + self.ray.direction * shape.inv_scale * t;
         let at = approach(self.ray, shape);
         let slide = self.slide(shape, local) / length(self.ray.direction);
-        Crossing { t: [0.0, t], error: [0.0, slide + self.root_error(sphere, &at, t, local)], is_sure: true }
+        // The start is rounded in object space.
+        let start = LOCAL * self.roundoff.shading * shape.radius / at.a.sqrt();
+        let error = slide + start + self.root_error(sphere, &at, t, local);
+        Crossing { t: [0.0, t], error: [0.0, error], is_sure: true }
     }
 
     /// How far the end of a chord at `local`, in object space, moves where its start is off along the surface: as far as the start,
@@ -215,10 +218,7 @@ impl Margins<'_> {
         let along = (slide + self.reach(sphere, &at, t, local) * length(self.ray.direction)).min(2.0 * size);
         let place = length(shape.center + local * self.world.materials[sphere].scale) + length(shape.center);
         let normal = normal_error(shape, local, along, self.width(sphere, t), LOCAL * shading * shape.radius);
-        PointError {
-            position: along + LOCAL * shading * size + PLACE * geometry * place,
-            normal: normal + ANGLE * shading,
-        }
+        PointError { position: along + geometry * (LOCAL * size + PLACE * place), normal: normal + ANGLE * shading }
     }
 }
 

@@ -37,9 +37,14 @@ pub struct Truth {
 /// The moment form: |c'|²t² + 2(S'·c')t + |S'|² − 1 = 0 has the discriminant |c'|² − |S'×c'|² (Lagrange's identity), free of
 /// the cancellation in (S'·c')² − |c'|²(|S'|² − 1).
 pub fn truth(origin: DVec3, direction: DVec3, center: DVec3, scale: DVec3) -> Truth {
+    truth_of(Vec3::from_f64(origin), Vec3::from_f64(direction), center, scale)
+}
+
+/// The same of a line in double-double.
+pub(crate) fn truth_of(origin: Vec3<Dd>, direction: Vec3<Dd>, center: DVec3, scale: DVec3) -> Truth {
     let radii = Vec3::from_f64(scale.abs());
-    let s = quotient(Vec3::from_f64(origin) - Vec3::from_f64(center), radii);
-    let c = quotient(Vec3::from_f64(direction), radii);
+    let s = quotient(origin - Vec3::from_f64(center), radii);
+    let c = quotient(direction, radii);
     let a = c.dot(c);
     let moment = cross(s, c);
     let discriminant = a - moment.dot(moment);
@@ -145,7 +150,7 @@ fn glass_world<T: Real>(bodies: &[Body]) -> World<T> {
 }
 
 /// a/b, componentwise.
-fn quotient<T: Real>(a: Vec3<T>, b: Vec3<T>) -> Vec3<T> {
+pub(crate) fn quotient<T: Real>(a: Vec3<T>, b: Vec3<T>) -> Vec3<T> {
     Vec3::new(a.x / b.x, a.y / b.y, a.z / b.z)
 }
 

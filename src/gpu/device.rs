@@ -10,10 +10,11 @@ use serde::Serialize;
 use super::ahead::Ahead;
 use super::error::Error;
 use super::kernel_cache::KernelCache;
-use super::pipeline::{MAX_TEXTURES, Specialisation, Stages, compile};
+use super::pipeline::{Specialisation, Stages, compile};
 use super::selftest::SelfTest;
-use super::shader::{Kernel, Module, Textures};
+use super::shader::{Kernel, Textures};
 use super::spirv::Parsed;
+use super::stage::MAX_TEXTURES;
 use super::tuned::DeviceTuning;
 use crate::misuse::Misuse;
 use crate::precision::Tier;
@@ -347,7 +348,7 @@ impl Gpu {
             .map_err(|error| Error::Lost(format!("{} stopped answering: {error}", self.info)))
     }
 
-    /// The module of one kernel of a picture.
+    /// The module of one kernel.
     pub(super) fn kernel_module(
         &self,
         module: &Parsed,
@@ -359,8 +360,9 @@ impl Gpu {
         self.checked("reading the shader", || {
             #[allow(
                 unsafe_code,
-                reason = "naga has validated the module; its SPIR-V has some decorations more, and functions in the place of \
-                          their calls: tests hold that it is well formed. Runtime checks it has none: see shader_module"
+                reason = "naga has validated the module; in its SPIR-V, which has some decorations more, functions stand in the \
+                          place of their calls and products and sums in that of dot and cross products: tests hold that it is \
+                          well formed. It checks no index, for the reasons that Parsed::spirv gives"
             )]
             unsafe {
                 self.device.create_shader_module_passthrough(wgpu::ShaderModuleDescriptorPassthrough {
@@ -372,23 +374,6 @@ impl Gpu {
                     spirv: Some(words.into()),
                     ..Default::default()
                 })
-            }
-        })
-    }
-
-    /// Hands the composed text to the driver.
-    pub(super) fn shader_module(&self, module: &Module) -> Result<wgpu::ShaderModule, Error> {
-        let descriptor =
-            wgpu::ShaderModuleDescriptor { label: None, source: wgpu::ShaderSource::Wgsl(module.text.as_str().into()) };
-        self.checked("reading the shader", || {
-            #[allow(
-                unsafe_code,
-                reason = "runtime checks cost up to 30 %: every index is below a length that the host set with the \
-                          buffers, or has checked (src/misuse.rs, src/gpu/probe/check.rs), every loop counts up to a \
-                          bound, no integer is divided by 0"
-            )]
-            unsafe {
-                self.device.create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked())
             }
         })
     }

@@ -1,10 +1,11 @@
 //! What the device reads of a packed scene, for the test that locks the layout.
 
-use super::compute::{Job, Space};
+use super::compute::Job;
 use super::device::Gpu;
 use super::error::Error;
 use super::pack::Packed;
 use super::shader::{Kernel, Module};
+use super::stage::Access;
 use crate::accel::Acceleration;
 use crate::camera::Camera;
 use crate::effects::{EffectSet, Effects};
@@ -35,16 +36,18 @@ pub fn echo_layout(
     let accel = Acceleration::new(scene, &Camera::new(scene, settings), effects.set, kernel.rounding());
     let packed = Packed::new(scene, settings, effects, kernel, &accel, None, 0.25);
     let [head, sphere, light, tail] = COUNTS;
+    let table = Access::Table(gpu.textures(), 4);
     let job = Job {
         what: "echoing the layout",
         module: &Module::echo(kernel, gpu.textures()),
+        entry_point: "echo_layout",
         inputs: &[
-            (0, Space::Uniform, &packed.params.bytes()),
-            (1, Space::Texels, &packed.shapes[0].bytes()),
-            (20, Space::Texels, &packed.shapes[1].bytes()),
-            (2, Space::Texels, &packed.materials.bytes()),
-            (3, Space::Texels, &packed.lights.bytes()),
-            (4, Space::Texels, &packed.window.bytes()),
+            (0, Access::Uniform, &packed.params.bytes()),
+            (1, table, &packed.shapes[0].bytes()),
+            (20, table, &packed.shapes[1].bytes()),
+            (2, table, &packed.materials.bytes()),
+            (3, table, &packed.lights.bytes()),
+            (4, table, &packed.window.bytes()),
         ],
         output: 21,
         output_len: head + sphere * scene.spheres.len() + light * scene.lights.len() + tail,

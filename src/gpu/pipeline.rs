@@ -4,19 +4,16 @@ use std::num::NonZeroU32;
 
 use super::device::Gpu;
 use super::error::Error;
-use super::kernel_cache::KernelCache;
 use super::pack::material_vectors;
 use super::shader::{Kernel, Module, Places, Slots, Storage, Textures, Variant, Walk};
 use super::spirv::Parsed;
-use super::upload::texel_format;
+use super::stage::Access::{Read, ReadWrite, Table, Texels, Uniform};
+use super::stage::{Access, Stage};
 use crate::accel::Grid;
 use crate::effects::{Effect, EffectSet, Effects};
 use crate::scene::Scene;
 use crate::settings::{Settings, Specular};
 use crate::tuning::Tuning;
-
-/// Textures that a kernel reads and writes at the most, whatever it is specialised for.
-pub(super) const MAX_TEXTURES: u32 = 13;
 
 /// What a pipeline is specialised for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -187,56 +184,6 @@ pub const WALK_PATHS: &str = "walk_paths";
 /// The entry point that shades what they have met, where several share an invocation.
 pub const SHADE_PATHS: &str = "shade_paths";
 
-/// How a binding is used.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Access {
-    Uniform,
-    Read,
-    ReadWrite,
-    /// A table with so many `u32` a texel.
-    Table(Textures, u32),
-    /// A texture with so many `u32` a texel that is written.
-    Texels(u32),
-}
-
-use Access::{Read, ReadWrite, Texels, Uniform};
-
-/// What a binding is bound to.
-#[derive(Debug, Clone)]
-pub(super) enum Resource {
-    Buffer(wgpu::Buffer),
-    Texels(wgpu::TextureView),
-}
-
-impl Resource {
-    pub(super) fn as_binding(&self) -> wgpu::BindingResource<'_> {
-        match self {
-            Self::Buffer(buffer) => buffer.as_entire_binding(),
-            Self::Texels(view) => wgpu::BindingResource::TextureView(view),
-        }
-    }
-}
-
-/// A compiled kernel and the bindings that it reads.
-#[derive(Debug)]
-pub(super) struct Stage {
-    pub(super) pipeline: wgpu::ComputePipeline,
-    layout: wgpu::BindGroupLayout,
-    bindings: Vec<u32>,
-}
-
-impl Stage {
-    /// Binds those of `resources` that the kernel reads.
-    pub(super) fn bind(&self, gpu: &Gpu, resources: &[(u32, Resource)]) -> wgpu::BindGroup {
-        let used = resources.iter().filter(|(binding, _)| self.bindings.contains(binding));
-        let entries: Vec<_> = used
-            .map(|(binding, resource)| wgpu::BindGroupEntry { binding: *binding, resource: resource.as_binding() })
-            .collect();
-        let descriptor = wgpu::BindGroupDescriptor { label: None, layout: &self.layout, entries: &entries };
-        gpu.device.create_bind_group(&descriptor)
-    }
-}
-
 /// The kernels of a bounce of the paths.
 #[derive(Debug)]
 pub(super) struct Bounce {
@@ -271,7 +218,7 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
     let Storage::Tables(textures) = specialisation.storage else {
         return Err(Error::Lost("only scenes in tables are rendered".into()));
     };
-    let [words, pairs, vectors] = [1, 2, 4].map(|components| Access::Table(textures, components));
+    let [words, pairs, vectors] = [1, 2, 4].map(|components| Table(textures, components));
     // What every stage reads and writes.
     let mut common = vec![(0, Uniform), (7, ReadWrite), (8, ReadWrite), (13, pairs), (17, pairs)];
     common.extend([1, 2, 3, 14, 20].map(|binding| (binding, vectors)));
@@ -289,13 +236,14 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
         Slots::List => (SEE_SAMPLES, Read),
     };
     let primary = [(4, vectors), (6, places)];
-    let kernel =
-        |entry_point, own: &[(u32, Access)]| stage(gpu, module, entry_point, &constants, &[&common[..], own].concat());
+    let kernel = |entry_point, own: &[(u32, Access)]| {
+        Stage::new(gpu, module, entry_point, &constants, &[&common[..], own].concat())
+    };
     let between = || {
         let module = parsed(&Module::between_stages())?;
         let mut group = vec![("GROUP", f64::from(specialisation.workgroup))];
         group.extend(constants.iter().filter(|(name, _)| *name == "PATHS"));
-        stage(gpu, &module, "begin_bounce", &group, &[(12, ReadWrite), (16, ReadWrite)])
+        Stage::new(gpu, &module, "begin_bounce", &group, &[(12, ReadWrite), (16, ReadWrite)])
     };
     let resolve = || {
         if specialisation.samples == 1 {
@@ -303,7 +251,7 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
         }
         let module = parsed(&Module::resolve(specialisation.kernel))?;
         let constants = [("SAMPLES", f64::from(specialisation.samples))];
-        stage(gpu, &module, "resolve", &constants, &[(0, Uniform), (7, Read), (15, ReadWrite)]).map(Some)
+        Stage::new(gpu, &module, "resolve", &constants, &[(0, Uniform), (7, Read), (15, ReadWrite)]).map(Some)
     };
     let copies: &[(u32, Access)] =
         if specialisation.variant().copies() { &[(24, vectors), (25, vectors)] } else { &[] };
@@ -332,62 +280,4 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
 /// What a thread has compiled.
 fn joined<T>(thread: std::thread::ScopedJoinHandle<Result<T, Error>>) -> Result<T, Error> {
     thread.join().unwrap_or_else(|_| Err(Error::Lost("compiling the kernels failed".into())))
-}
-
-fn stage(
-    gpu: &Gpu,
-    module: &Parsed,
-    entry_point: &str,
-    constants: &[(&str, f64)],
-    bindings: &[(u32, Access)],
-) -> Result<Stage, Error> {
-    let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
-    let storage_texture = |access, components| wgpu::BindingType::StorageTexture {
-        access,
-        format: texel_format(components),
-        view_dimension: wgpu::TextureViewDimension::D2,
-    };
-    let entry = |&(binding, access): &(u32, Access)| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty: match access {
-            Uniform => buffer(wgpu::BufferBindingType::Uniform),
-            Read => buffer(wgpu::BufferBindingType::Storage { read_only: true }),
-            ReadWrite => buffer(wgpu::BufferBindingType::Storage { read_only: false }),
-            Access::Table(Textures::Sampled, _) => wgpu::BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Uint,
-                view_dimension: wgpu::TextureViewDimension::D2,
-                multisampled: false,
-            },
-            Access::Table(Textures::Stored, components) => {
-                storage_texture(wgpu::StorageTextureAccess::ReadOnly, components)
-            }
-            Texels(components) => storage_texture(wgpu::StorageTextureAccess::WriteOnly, components),
-        },
-        count: None,
-    };
-    let is_texture = |(_, access): &&(u32, Access)| matches!(access, Access::Table(..) | Texels(_));
-    debug_assert!(bindings.iter().filter(is_texture).count() <= MAX_TEXTURES as usize);
-    let entries: Vec<_> = bindings.iter().map(entry).collect();
-    let mut bindings: Vec<_> = bindings.iter().map(|(binding, _)| *binding).collect();
-    bindings.sort_unstable();
-    let module = gpu.kernel_module(module, entry_point, constants, &bindings)?;
-    gpu.checked("compiling the kernels", || {
-        let descriptor = wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries };
-        let layout = gpu.device.create_bind_group_layout(&descriptor);
-        let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: None,
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
-        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(entry_point),
-            layout: Some(&pipeline_layout),
-            module: &module,
-            entry_point: Some(entry_point),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            cache: gpu.kernel_cache.as_ref().map(KernelCache::handle),
-        });
-        Stage { pipeline, layout, bindings }
-    })
 }

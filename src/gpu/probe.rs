@@ -15,8 +15,11 @@ use super::pack::{bytes, low_light, low_shape, shape_value};
 use super::pipeline::Specialisation;
 use super::readable::Readable;
 use super::shader::{Kernel, Module, Places, Slots, Storage, Walk};
+use super::spirv::Parsed;
+use super::stage::Access::{Read, ReadWrite, Uniform};
+use super::stage::{Access, Resource, Stage};
 use crate::camera::NEAR_T_MIN;
-use crate::effects::EffectSet;
+use crate::effects::{Effect, EffectSet};
 use crate::geometry::{Ellipsoid, range_factor, shape_indices};
 use crate::scene::{Light, Sphere};
 
@@ -24,6 +27,8 @@ use crate::scene::{Light, Sphere};
 const MAX_RAYS: usize = 1 << 16;
 /// Invocations of a workgroup, as in `shaders/probe.wgsl`.
 const GROUP: usize = 64;
+/// Numbers of an answer with the point of the hit, as there.
+const POINT_VALUES: usize = 13;
 
 /// One ray and what it can meet.
 #[derive(Debug, Clone, Copy)]
@@ -64,6 +69,8 @@ pub struct Batch {
     pub bounces: u32,
     /// Index of refraction of all surfaces, for [`Question::Refract`].
     pub eta: f64,
+    /// Specular exponent of all surfaces, for [`Question::Highlight`].
+    pub exponent: f64,
 }
 
 impl Batch {
@@ -88,6 +95,19 @@ impl Batch {
     }
 }
 
+/// What the device says of the point of a hit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Point {
+    /// Where it is.
+    pub place: DVec3,
+    /// What the kernel carries of it besides.
+    pub place_low: DVec3,
+    /// The unit normal on the side of the ray.
+    pub normal: DVec3,
+    /// The unit direction of the mirrored ray.
+    pub mirrored: DVec3,
+}
+
 /// What the device says of a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Answer {
@@ -103,8 +123,10 @@ pub struct Answer {
     pub blocked: bool,
     /// The surface, by its place in the batch.
     pub surface: u32,
-    /// t, the cosine to the light, or the power asked for.
+    /// t, the cosine to the light, the specular term, or the power asked for.
     pub value: f64,
+    /// The point of the hit, where it was asked for; anything where nothing is hit.
+    pub point: Option<Point>,
     /// The two words as they are.
     pub words: [u32; 2],
 }
@@ -114,13 +136,20 @@ pub struct Answer {
 pub enum Question {
     /// The nearest hit.
     Nearest,
+    /// The nearest hit and its point.
+    Point,
     /// Whether anything stands between the origin and t = 1.
     Blocked,
     /// The nearest hit, and whether its light reaches it.
     Lit,
-    /// The hit after so many reflections as the batch says.
+    /// The nearest hit, and the specular term of its light: (N·H)ⁿ if `blinn`, else (R·V)ⁿ.
+    Highlight {
+        /// Which of the two.
+        blinn: bool,
+    },
+    /// The hit after so many reflections as the batch says, and its point.
     Bounce,
-    /// The hit after so many refractions as the batch says.
+    /// The hit after so many refractions as the batch says, and its point.
     Refract,
     /// cosⁿ; the origin's x is 1 − cos, its y is n.
     Power,
@@ -132,8 +161,10 @@ impl Question {
     fn entry_point(self) -> &'static str {
         match self {
             Self::Nearest => "probe_nearest",
+            Self::Point => "probe_point",
             Self::Blocked => "probe_blocked",
             Self::Lit => "probe_lit",
+            Self::Highlight { .. } => "probe_highlight",
             Self::Bounce => "probe_bounce",
             Self::Refract => "probe_refract",
             Self::Power => "probe_power",
@@ -141,21 +172,26 @@ impl Question {
         }
     }
 
-    /// Bindings that the entry point reads, as in `shaders/`; with those for the low parts.
-    fn bindings(self, low: bool) -> Vec<u32> {
+    /// What the entry point reads and writes, as in `shaders/`; with the low parts.
+    fn bindings(self, low: bool) -> Vec<(u32, Access)> {
         let (plain, more): (&[u32], &[u32]) = match self {
-            Self::Nearest | Self::Blocked => (&[0, 1, 13, 15, 16, 17], &[9, 14]),
-            Self::Lit => (&[0, 1, 2, 3, 13, 15, 16, 17], &[9, 10, 14]),
-            Self::Bounce => (&[0, 1, 2, 13, 15, 16, 17], &[9, 14]),
-            Self::Refract => (&[0, 1, 2, 5, 13, 15, 16, 17], &[9, 14]),
-            Self::Power => (&[13, 16, 17], &[]),
-            Self::Transforms => (&[0, 13, 16, 17], &[]),
+            Self::Nearest | Self::Blocked => (&[1, 13, 15], &[9, 14]),
+            Self::Lit | Self::Highlight { .. } => (&[1, 2, 3, 13, 15], &[9, 10, 14]),
+            Self::Point | Self::Bounce => (&[1, 2, 13, 15], &[9, 14]),
+            Self::Refract => (&[1, 2, 5, 13, 15], &[9, 14]),
+            Self::Power | Self::Transforms => (&[13], &[]),
         };
-        let mut bindings = plain.to_vec();
-        if low {
-            bindings.extend(more);
+        let more = if low { more } else { &[] };
+        let read = plain.iter().chain(more).map(|&binding| (binding, Read));
+        read.chain([(0, Uniform), (16, ReadWrite), (17, ReadWrite)]).collect()
+    }
+
+    /// Numbers of an answer.
+    fn values(self) -> usize {
+        match self {
+            Self::Point | Self::Bounce | Self::Refract => POINT_VALUES,
+            _ => 1,
         }
-        bindings
     }
 }
 
@@ -186,8 +222,9 @@ struct Inputs {
 pub struct Prober<'a> {
     gpu: &'a Gpu,
     kernel: Kernel,
-    module: wgpu::ShaderModule,
-    pipelines: HashMap<Question, wgpu::ComputePipeline>,
+    module: Parsed,
+    /// By question, and whether object space is more than a translation.
+    stages: HashMap<(Question, bool), Stage>,
     busy: Duration,
 }
 
@@ -198,8 +235,8 @@ impl<'a> Prober<'a> {
             Kernel::Tier(tier) => gpu.kernel(tier)?,
             kernel => kernel,
         };
-        let module = gpu.shader_module(&Module::probe(kernel))?;
-        Ok(Self { gpu, kernel, module, pipelines: HashMap::new(), busy: Duration::ZERO })
+        let module = Parsed::new(&Module::probe(kernel)).map_err(Error::Lost)?;
+        Ok(Self { gpu, kernel, module, stages: HashMap::new(), busy: Duration::ZERO })
     }
 
     /// Its kernel.
@@ -220,7 +257,10 @@ impl<'a> Prober<'a> {
     /// Answers `question` for every ray of `batch`, in order; [`Error::Misuse`] where the parts of the batch do not fit together.
     pub fn ask(&mut self, question: Question, batch: &Batch) -> Result<Vec<Answer>, Error> {
         batch.check(question)?;
-        self.prepare(question)?;
+        // As in a picture: true spheres need no object space.
+        let ellipsoids =
+            batch.surfaces.iter().any(|surface| surface.scale.abs().max_element() != surface.scale.abs().min_element());
+        self.prepare(question, ellipsoids)?;
         let mut answers = Vec::with_capacity(batch.rays.len());
         for (chunk, rays) in batch.rays.chunks(MAX_RAYS).enumerate() {
             let first = rays.iter().map(|ray| ray.first).min().unwrap_or(0);
@@ -229,12 +269,10 @@ impl<'a> Prober<'a> {
             let lights = batch.lights.iter().skip(chunk * MAX_RAYS).take(rays.len());
             let lights: Vec<_> = lights.map(|&position| Light { position, intensity: DVec3::ONE }).collect();
             let bounces = matches!(question, Question::Bounce | Question::Refract).then_some(batch.bounces);
-            let inputs = if self.kernel.is_double() {
-                pack::<double::Layout>(rays, surfaces, &lights, first, bounces, batch.eta)
-            } else {
-                pack::<single::Layout>(rays, surfaces, &lights, first, bounces, batch.eta)
-            };
-            self.dispatch(question, &inputs, rays.len(), first, &mut answers)?;
+            let part = Part { rays, surfaces, first, lights, bounces, ellipsoids, batch };
+            let inputs =
+                if self.kernel.is_double() { part.pack::<double::Layout>() } else { part.pack::<single::Layout>() };
+            self.dispatch((question, ellipsoids), &inputs, rays.len(), first, &mut answers)?;
         }
         Ok(answers)
     }
@@ -242,7 +280,7 @@ impl<'a> Prober<'a> {
     /// The nearest hit of every ray with its shape; [`Error::Misuse`] where there is not one for each.
     pub fn ask_raw(&mut self, batch: &RawBatch) -> Result<Vec<Answer>, Error> {
         batch.check()?;
-        self.prepare(Question::Nearest)?;
+        self.prepare(Question::Nearest, true)?;
         let mut answers = Vec::with_capacity(batch.rays.len());
         for (rays, shapes) in batch.rays.chunks(MAX_RAYS).zip(batch.shapes.chunks(MAX_RAYS)) {
             let inputs = if self.kernel.is_double() {
@@ -250,21 +288,21 @@ impl<'a> Prober<'a> {
             } else {
                 pack_raw::<single::Layout>(rays, shapes)
             };
-            self.dispatch(Question::Nearest, &inputs, rays.len(), 0, &mut answers)?;
+            self.dispatch((Question::Nearest, true), &inputs, rays.len(), 0, &mut answers)?;
         }
         Ok(answers)
     }
 
-    fn prepare(&mut self, question: Question) -> Result<(), Error> {
-        if self.pipelines.contains_key(&question) {
+    fn prepare(&mut self, question: Question, ellipsoids: bool) -> Result<(), Error> {
+        if self.stages.contains_key(&(question, ellipsoids)) {
             return Ok(());
         }
         let specialisation = Specialisation {
             kernel: self.kernel,
-            effects: EffectSet::ALL,
+            effects: EffectSet::ALL.with(Effect::Ellipsoids, ellipsoids),
             shared_surfaces: true,
             refraction: None,
-            blinn: false,
+            blinn: question == Question::Highlight { blinn: true },
             storage: Storage::Ranges,
             lights: 0,
             places: Places::Large,
@@ -275,47 +313,38 @@ impl<'a> Prober<'a> {
             samples: 1,
             slots: Slots::Tiles,
         };
-        let pipeline = self.gpu.checked("compiling the probe", || {
-            self.gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(question.entry_point()),
-                layout: None,
-                module: &self.module,
-                entry_point: Some(question.entry_point()),
-                compilation_options: wgpu::PipelineCompilationOptions {
-                    constants: &specialisation.constants(),
-                    zero_initialize_workgroup_memory: false,
-                },
-                cache: None,
-            })
-        })?;
-        self.pipelines.insert(question, pipeline);
+        let bindings = question.bindings(self.kernel.carries_low());
+        let constants = specialisation.constants();
+        let stage = Stage::new(self.gpu, &self.module, question.entry_point(), &constants, &bindings)?;
+        self.stages.insert((question, ellipsoids), stage);
         Ok(())
     }
 
     fn dispatch(
         &mut self,
-        question: Question,
+        asked: (Question, bool),
         inputs: &Inputs,
         count: usize,
         first: u32,
         answers: &mut Vec<Answer>,
     ) -> Result<(), Error> {
-        let Some(pipeline) = self.pipelines.get(&question) else { return Ok(()) };
+        let (question, _) = asked;
+        let Some(stage) = self.stages.get(&asked) else { return Ok(()) };
         let gpu = self.gpu;
         let padded = count.next_multiple_of(GROUP);
         let real = if self.kernel.is_double() { 8 } else { 4 };
         let params = if self.kernel.is_double() { params::<double::Layout>() } else { params::<single::Layout>() };
         let flags = Readable::new(gpu, padded as u64 * 2);
-        let values = Readable::new(gpu, (padded * real / 4) as u64);
-        let wanted = question.bindings(self.kernel.carries_low());
-        let buffers = gpu.checked("reserving buffers", || {
+        let size = question.values();
+        let values = Readable::new(gpu, (padded * size * real / 4) as u64);
+        let group = gpu.checked("reserving buffers", || {
             let buffer = |(binding, contents, usage): (u32, &[u8], wgpu::BufferUsages)| {
                 let contents = if contents.is_empty() { &[0; 256] } else { contents };
                 let descriptor = wgpu::util::BufferInitDescriptor { label: None, contents, usage };
-                (binding, gpu.device.create_buffer_init(&descriptor))
+                (binding, Resource::Buffer(gpu.device.create_buffer_init(&descriptor)))
             };
             let storage = wgpu::BufferUsages::STORAGE;
-            let all: [(u32, &[u8], wgpu::BufferUsages); 10] = [
+            let inputs: [(u32, &[u8], wgpu::BufferUsages); 10] = [
                 (0, &params, wgpu::BufferUsages::UNIFORM),
                 (1, &inputs.shapes, storage),
                 (2, &inputs.materials, storage),
@@ -327,38 +356,26 @@ impl<'a> Prober<'a> {
                 (14, &inputs.reals_low, storage),
                 (15, bytemuck::cast_slice(&inputs.words), storage),
             ];
-            all.into_iter().filter(|(binding, ..)| wanted.contains(binding)).map(buffer).collect::<Vec<_>>()
+            let outputs = [(16, &flags), (17, &values)];
+            let outputs = outputs.map(|(binding, output)| (binding, Resource::Buffer(output.buffer.clone())));
+            stage.bind(gpu, &inputs.into_iter().map(buffer).chain(outputs).collect::<Vec<_>>())
         })?;
-        let outputs = [(16, &flags.buffer), (17, &values.buffer)];
-        let entries: Vec<_> = buffers
-            .iter()
-            .map(|(binding, buffer)| (*binding, buffer))
-            .chain(outputs)
-            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
-            .collect();
-        let bind_group = gpu.checked("binding the probe's buffers", || {
-            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: None,
-                layout: &pipeline.get_bind_group_layout(0),
-                entries: &entries,
-            })
-        })?;
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, &bind_group, &[]);
-            pass.dispatch_workgroups((padded / GROUP) as u32, 1, 1);
-        }
         let start = Instant::now();
-        gpu.queue.submit([encoder.finish()]);
+        stage.dispatch(gpu, &group, [(padded / GROUP) as u32, 1]);
         gpu.wait()?;
         self.busy += start.elapsed();
         let flags = flags.read(gpu, count * 2, <[u32]>::to_vec)?;
-        let values = values.read(gpu, count * real / 4, <[u32]>::to_vec)?;
+        let values = values.read(gpu, count * size * real / 4, <[u32]>::to_vec)?;
         let value = |i: usize| match real {
             4 => f64::from(f32::from_bits(values[i])),
             _ => f64::from_bits(u64::from(values[2 * i]) | (u64::from(values[2 * i + 1]) << 32)),
+        };
+        let vector = |at: usize| DVec3::new(value(at), value(at + 1), value(at + 2));
+        let point = |at: usize| Point {
+            place: vector(at + 1),
+            place_low: vector(at + 4),
+            normal: vector(at + 7),
+            mirrored: vector(at + 10),
         };
         answers.extend(flags.as_chunks::<2>().0.iter().enumerate().map(|(i, words)| Answer {
             found: words[0] & 1 != 0,
@@ -367,7 +384,8 @@ impl<'a> Prober<'a> {
             facing: words[0] & 8 != 0,
             blocked: words[0] & 16 != 0,
             surface: words[1].wrapping_add(first),
-            value: value(i),
+            value: value(i * size),
+            point: (size == POINT_VALUES).then(|| point(i * size)),
             words: *words,
         }));
         Ok(())
@@ -396,54 +414,66 @@ fn reals<L: Layout>(values: impl Iterator<Item = [f64; 6]>, count: usize) -> Vec
     bytes(values.chain(std::iter::repeat_n([0.0; 6], padding)).flatten().map(L::real))
 }
 
-fn pack<L: Layout>(
-    rays: &[ProbeRay],
-    surfaces: &[Surface],
-    lights: &[Light],
+/// What of a batch one dispatch answers.
+struct Part<'a> {
+    rays: &'a [ProbeRay],
+    /// Those that the rays can meet, from this one of the batch on.
+    surfaces: &'a [Surface],
     first: u32,
+    lights: Vec<Light>,
     bounces: Option<u32>,
-    eta: f64,
-) -> Inputs {
-    let sphere = |s: &Surface| Sphere {
-        center: s.center,
-        scale: s.scale,
-        color: DVec3::ONE,
-        ka: 0.0,
-        kd: 1.0,
-        ks: 0.0,
-        kr: 0.0,
-        n: 1.0,
-        kt: 1.0,
-        eta,
-    };
-    let spheres: Vec<_> = surfaces.iter().map(sphere).collect();
-    let ellipsoids: Vec<_> = spheres.iter().map(Ellipsoid::new).collect();
-    let indices = shape_indices(&spheres, true).unwrap_or_else(|| (0..spheres.len() as u32).collect());
-    let shapes: Vec<_> = ellipsoids.iter().zip(indices).map(|(e, index)| shape_value(e, index, true)).collect();
-    let numbers = |ray: &ProbeRay| {
-        let (o, d) = (ray.origin, ray.direction);
-        [o.x, o.y, o.z, d.x, d.y, d.z]
-    };
-    let words = |ray: &ProbeRay| {
-        let own = ray.own.map_or(0, |own| own - first + 1);
-        [ray.first - first, ray.end - first, bounces.unwrap_or(u32::from(!ray.primary)), own]
-    };
-    // The kernel reads the light of every invocation, those past the last ray included.
-    let padding = rays.len().next_multiple_of(GROUP) - rays.len();
-    let mut lights = lights.to_vec();
-    lights.extend(std::iter::repeat_n(Light { position: DVec3::ZERO, intensity: DVec3::ONE }, padding));
-    let mut words: Vec<_> = rays.iter().map(words).collect();
-    words.extend(std::iter::repeat_n([0; 4], padding));
-    Inputs {
-        shapes: bytes(shapes.iter().map(L::shape)),
-        shapes_low: bytes(shapes.iter().map(|s| L::shape(&low_shape::<L>(s)))),
-        materials: bytes(spheres.iter().zip(&ellipsoids).map(|(s, e)| L::material(s, e.scale))),
-        glasses: bytes(spheres.iter().map(L::glass)),
-        lights: bytes(lights.iter().map(L::light)),
-        lights_low: bytes(lights.iter().map(|light| L::light(&low_light::<L>(light)))),
-        reals: reals::<L>(rays.iter().map(numbers), rays.len()),
-        reals_low: reals::<L>(rays.iter().map(|ray| numbers(ray).map(L::residual)), rays.len()),
-        words,
+    /// Whether object space is more than a translation.
+    ellipsoids: bool,
+    batch: &'a Batch,
+}
+
+impl Part<'_> {
+    fn pack<L: Layout>(&self) -> Inputs {
+        let Self { rays, first, .. } = *self;
+        let sphere = |s: &Surface| Sphere {
+            center: s.center,
+            scale: s.scale,
+            color: DVec3::ONE,
+            ka: 0.0,
+            kd: 1.0,
+            ks: 1.0,
+            kr: 0.0,
+            n: self.batch.exponent,
+            kt: 1.0,
+            eta: self.batch.eta,
+        };
+        let spheres: Vec<_> = self.surfaces.iter().map(sphere).collect();
+        let ellipsoids: Vec<_> = spheres.iter().map(Ellipsoid::new).collect();
+        let indices = shape_indices(&spheres, true).unwrap_or_else(|| (0..spheres.len() as u32).collect());
+        let shapes = ellipsoids.iter().zip(indices).map(|(e, index)| shape_value(e, index, self.ellipsoids));
+        let shapes: Vec<_> = shapes.collect();
+        let material =
+            |(s, e): (&Sphere, &Ellipsoid)| L::material(s, if self.ellipsoids { e.scale } else { DVec3::ONE });
+        let numbers = |ray: &ProbeRay| {
+            let (o, d) = (ray.origin, ray.direction);
+            [o.x, o.y, o.z, d.x, d.y, d.z]
+        };
+        let words = |ray: &ProbeRay| {
+            let own = ray.own.map_or(0, |own| own - first + 1);
+            [ray.first - first, ray.end - first, self.bounces.unwrap_or(u32::from(!ray.primary)), own]
+        };
+        // The kernel reads the light of every invocation, those past the last ray included.
+        let padding = rays.len().next_multiple_of(GROUP) - rays.len();
+        let mut lights = self.lights.clone();
+        lights.extend(std::iter::repeat_n(Light { position: DVec3::ZERO, intensity: DVec3::ONE }, padding));
+        let mut words: Vec<_> = rays.iter().map(words).collect();
+        words.extend(std::iter::repeat_n([0; 4], padding));
+        Inputs {
+            shapes: bytes(shapes.iter().map(L::shape)),
+            shapes_low: bytes(shapes.iter().map(|s| L::shape(&low_shape::<L>(s)))),
+            materials: bytes(spheres.iter().zip(&ellipsoids).map(material)),
+            glasses: bytes(spheres.iter().map(L::glass)),
+            lights: bytes(lights.iter().map(L::light)),
+            lights_low: bytes(lights.iter().map(|light| L::light(&low_light::<L>(light)))),
+            reals: reals::<L>(rays.iter().map(numbers), rays.len()),
+            reals_low: reals::<L>(rays.iter().map(|ray| numbers(ray).map(L::residual)), rays.len()),
+            words,
+        }
     }
 }
 

@@ -9,6 +9,9 @@ use super::device::Gpu;
 use super::error::Error;
 use super::readable::Readable;
 use super::shader::Module;
+use super::spirv::Parsed;
+use super::stage::Access::{self, Read, ReadWrite, Uniform};
+use super::stage::{Resource, Stage};
 use crate::misuse::check_colors;
 use crate::sampling::{Fill, NO_SAMPLE, Samples, flood_steps, packed};
 
@@ -19,14 +22,18 @@ const GROUP: u32 = 64;
 #[derive(Debug)]
 pub struct Reconstructor<'a> {
     gpu: &'a Gpu,
-    jump: wgpu::ComputePipeline,
-    fills: HashMap<Fill, wgpu::ComputePipeline>,
+    jump: Stage,
+    fills: HashMap<Fill, Stage>,
 }
 
 impl<'a> Reconstructor<'a> {
     /// Compiles the kernel that finds nearest samples.
     pub fn new(gpu: &'a Gpu) -> Result<Self, Error> {
-        Ok(Self { gpu, jump: pipeline(gpu, &Module::flood(), "jump")?, fills: HashMap::new() })
+        Ok(Self {
+            gpu,
+            jump: stage(gpu, &Module::flood(), "jump", &[Uniform, Read, ReadWrite])?,
+            fills: HashMap::new(),
+        })
     }
 
     /// Where the nearest sample of each pixel lies, packed, pixels in reading order.
@@ -43,12 +50,13 @@ impl<'a> Reconstructor<'a> {
     pub fn filled(&mut self, samples: &Samples, colors: &[[u8; 3]], fill: Fill) -> Result<Vec<u8>, Error> {
         check_colors(samples.pixels().len(), colors.len())?;
         let gpu = self.gpu;
+        let owners = self.flood(samples)?;
         let kernel = match self.fills.entry(fill) {
             Entry::Occupied(entry) => entry.into_mut(),
-            Entry::Vacant(entry) => entry.insert(pipeline(gpu, &Module::fill(fill), "fill")?),
-        }
-        .clone();
-        let owners = self.flood(samples)?;
+            Entry::Vacant(entry) => {
+                entry.insert(stage(gpu, &Module::fill(fill), "fill", &[Uniform, Read, Read, ReadWrite])?)
+            }
+        };
         let mut known = vec![0_u32; pixel_count(samples)];
         for (pixel, &[r, g, b]) in samples.pixels().iter().zip(colors) {
             known[index(samples, *pixel)] = u32::from_le_bytes([r, g, b, 0]);
@@ -58,7 +66,7 @@ impl<'a> Reconstructor<'a> {
             let picture = Readable::new(gpu, pixel_count(samples) as u64);
             let params = params(gpu, samples, 0);
             let bound = [&params, &owners.buffer, &known, &picture.buffer];
-            run(gpu, &kernel, samples, &[bind(gpu, &kernel, &bound)]);
+            run(gpu, kernel, samples, &[bind(gpu, kernel, &bound)]);
             picture
         })?;
         picture.read(gpu, pixel_count(samples), |pixels| {
@@ -123,41 +131,23 @@ fn storage(gpu: &Gpu, values: &[u32]) -> wgpu::Buffer {
     gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
 }
 
-fn pipeline(gpu: &Gpu, module: &Module, entry_point: &str) -> Result<wgpu::ComputePipeline, Error> {
-    let module = gpu.shader_module(module)?;
-    gpu.checked("compiling the kernels that fill pictures", || {
-        gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(entry_point),
-            layout: None,
-            module: &module,
-            entry_point: Some(entry_point),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            cache: None,
-        })
-    })
+/// A kernel whose bindings are used like this, in their order.
+fn stage(gpu: &Gpu, module: &Module, entry_point: &str, uses: &[Access]) -> Result<Stage, Error> {
+    let bindings: Vec<_> = (0..).zip(uses.iter().copied()).collect();
+    Stage::new(gpu, &Parsed::new(module).map_err(Error::Lost)?, entry_point, &[], &bindings)
 }
 
 /// Binds buffers in the order of their bindings.
-fn bind(gpu: &Gpu, pipeline: &wgpu::ComputePipeline, buffers: &[&wgpu::Buffer]) -> wgpu::BindGroup {
-    let bound = (0..).zip(buffers);
-    let entries: Vec<_> =
-        bound.map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() }).collect();
-    let layout = pipeline.get_bind_group_layout(0);
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries })
+fn bind(gpu: &Gpu, stage: &Stage, buffers: &[&wgpu::Buffer]) -> wgpu::BindGroup {
+    let resources = buffers.iter().map(|&buffer| Resource::Buffer(buffer.clone()));
+    stage.bind(gpu, &(0..).zip(resources).collect::<Vec<_>>())
 }
 
 /// Runs a kernel over all pixels, once for each group.
-fn run(gpu: &Gpu, pipeline: &wgpu::ComputePipeline, samples: &Samples, groups: &[wgpu::BindGroup]) {
+fn run(gpu: &Gpu, stage: &Stage, samples: &Samples, groups: &[wgpu::BindGroup]) {
     let (width, height) = samples.size();
     // A dispatch of its own for each, so that none is long.
     for group in groups {
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, group, &[]);
-            pass.dispatch_workgroups(width.div_ceil(GROUP), height, 1);
-        }
-        gpu.queue.submit([encoder.finish()]);
+        stage.dispatch(gpu, group, [width.div_ceil(GROUP), height]);
     }
 }

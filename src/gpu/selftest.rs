@@ -2,11 +2,12 @@
 
 use std::path::PathBuf;
 
-use super::compute::{Job, Space};
+use super::compute::Job;
 use super::device::Gpu;
 use super::error::Error;
 use super::layout::single::Params;
 use super::shader::Module;
+use super::stage::Access;
 use crate::cache;
 use serde::Serialize;
 
@@ -115,9 +116,10 @@ fn transform(gpu: &Gpu, operands: &[[f32; 2]]) -> Result<Vec<u32>, Error> {
     let job = Job {
         what: "the self-test of error-free transforms",
         module: &Module::selftest(),
+        entry_point: "transform_pairs",
         inputs: &[
-            (0, Space::Uniform, bytemuck::bytes_of(&params)),
-            (20, Space::Storage, bytemuck::cast_slice(operands)),
+            (0, Access::Uniform, bytemuck::bytes_of(&params)),
+            (20, Access::Read, bytemuck::cast_slice(operands)),
         ],
         output: 21,
         output_len: operands.len() * 4,

@@ -2,7 +2,9 @@
 //! is written, and which calls no functions.
 //!
 //! WGSL lets a driver fuse, reorder and leave out operations, and drivers do so differently where a kernel differs in something
-//! else. SPIR-V has a decoration that forbids it, which naga does not write.
+//! else. SPIR-V has a decoration that forbids it, which naga does not write. Instructions that stand for several operations are
+//! written out, since drivers choose themselves how to expand them. What is left to the device is how it divides and takes square
+//! roots, which Vulkan lets be some units in the last place off.
 
 use naga::back::spv;
 use naga::compact::{KeepUnused, compact};
@@ -14,6 +16,7 @@ use rspirv::dr::{self, Operand};
 use rspirv::spirv::{Decoration, Op};
 
 use super::inline::inline_calls;
+use super::products::expand_products;
 use super::shader::Module;
 
 /// A module that is parsed.
@@ -70,9 +73,12 @@ impl Parsed {
             let place = spv::BindingInfo { descriptor_set: 0, binding: place, binding_array_size: None };
             (ResourceBinding { group: 0, binding }, place)
         });
-        // Without checks, for the reasons that Gpu::shader_module gives.
+        // Checks cost up to 30 %: every index is below a length that the host set with the buffers, every loop counts up to a
+        // bound, no integer is divided by 0.
         let unchecked = BoundsCheckPolicy::Unchecked;
         let options = spv::Options {
+            // Later versions than 1.4 forbid that what is in a buffer and a variable of the kernel have the same type.
+            lang_version: (1, 0),
             flags: spv::WriterFlags::empty(),
             fake_missing_bindings: false,
             binding_map: places.collect(),
@@ -91,6 +97,7 @@ impl Parsed {
         let words = spv::write_vec(&module, &info, &options, Some(&entry)).map_err(|error| error.to_string())?;
         let mut module = dr::load_words(words).map_err(|error| error.to_string())?;
         inline_calls(&mut module);
+        expand_products(&mut module);
         forbid_contraction(&mut module);
         Ok(module.assemble())
     }
@@ -143,9 +150,9 @@ fn join_returns(block: &mut Block) -> bool {
     matches!(block.last(), Some(Statement::Return { value: None }))
 }
 
-/// The operations on floating-point numbers whose result is rounded.
-const ROUNDED: [Op; 9] =
-    [Op::FNegate, Op::FAdd, Op::FSub, Op::FMul, Op::FDiv, Op::FRem, Op::VectorTimesScalar, Op::Dot, Op::ExtInst];
+/// The operations on floating-point numbers whose result is rounded, as far as kernels have them; the square root is among the
+/// extended instructions.
+const ROUNDED: [Op; 7] = [Op::FNegate, Op::FAdd, Op::FSub, Op::FMul, Op::FDiv, Op::VectorTimesScalar, Op::ExtInst];
 
 /// Decorates the result of each operation on floating-point numbers with `NoContraction`.
 fn forbid_contraction(module: &mut dr::Module) {

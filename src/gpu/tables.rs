@@ -3,7 +3,8 @@
 use super::device::Gpu;
 use super::error::Error;
 use super::pack::{Contents, Packed};
-use super::pipeline::{Resource, Specialisation};
+use super::pipeline::Specialisation;
+use super::stage::Resource;
 use super::upload::{max_texels, upload, upload_texels};
 use crate::accel::Acceleration;
 

@@ -18,11 +18,12 @@ pub struct Metrics {
     pub false_misses: u64,
     /// The hit of another root or of another sphere.
     pub wrong_roots: u64,
-    /// Those of the three whose |1 − l²| is at least the tier's band around the tangent.
+    /// Those of the three that are at least the tier's band away from being right: whose path comes no nearer to a tangent, |1 − l²|,
+    /// or to the critical angle, the square of the refracted ray's cosine.
     pub wrong_beyond_band: u64,
     /// Hits of another sphere than the nearest.
     pub inversions: u64,
-    /// Greatest |1 − l²| of a wrong ray.
+    /// The greatest such distance of a wrong ray.
     pub misclassified: f64,
     /// Median relative error of t, in units of 2⁻²³.
     pub p50: Option<f64>,
@@ -30,13 +31,24 @@ pub struct Metrics {
     pub p999: Option<f64>,
     /// Greatest.
     pub max: Option<f64>,
+    /// Greatest relative error of t times the cosines between rays and normals on the way, where surfaces are spheres: errors grow
+    /// like one over them. This and the next three are in units of 2⁻²³.
+    pub worst_t: Option<f64>,
+    /// Greatest error of the hit point in greatest semi-axes, weighted likewise.
+    pub worst_place: Option<f64>,
+    /// Greatest error of the unit normal, weighted likewise.
+    pub worst_normal: Option<f64>,
+    /// Greatest error of the mirrored direction, weighted likewise.
+    pub worst_mirrored: Option<f64>,
     /// Hits or results that are not finite, and pixels with the status of one.
     pub not_finite: u64,
     /// Lit points in the dark.
     pub acne: Option<u64>,
     /// Dark points in the light.
     pub leaks: Option<u64>,
-    /// Greatest absolute error of the specular power.
+    /// Greatest absolute error of N·L, weighted likewise.
+    pub light_error: Option<f64>,
+    /// Greatest absolute error of the specular power or term.
     pub power_error: Option<f64>,
     /// Bits or pixels that differ where none may.
     pub differing: Option<u64>,
@@ -63,18 +75,24 @@ impl Metrics {
         (self.p50, self.p999, self.max) = (at(0.5), at(0.999), at(1.0));
     }
 
+    /// NaN where the case has no such thing.
     fn value(&self, quantity: Quantity) -> f64 {
         match quantity {
             Quantity::Wrong => self.per_million(self.wrong()),
             Quantity::WrongBeyondBand => self.per_million(self.wrong_beyond_band),
             Quantity::Inversions => self.per_million(self.inversions),
             Quantity::Misclassified => self.misclassified,
-            Quantity::P999 => self.p999.unwrap_or(0.0),
+            Quantity::P999 => self.p999.unwrap_or(f64::NAN),
+            Quantity::WorstT => self.worst_t.unwrap_or(f64::NAN),
+            Quantity::WorstPlace => self.worst_place.unwrap_or(f64::NAN),
+            Quantity::WorstNormal => self.worst_normal.unwrap_or(f64::NAN),
+            Quantity::WorstMirrored => self.worst_mirrored.unwrap_or(f64::NAN),
+            Quantity::LightError => self.light_error.unwrap_or(f64::NAN),
             Quantity::NotFinite => self.not_finite as f64,
-            Quantity::Acne => self.per_million(self.acne.unwrap_or(0)),
-            Quantity::Leaks => self.per_million(self.leaks.unwrap_or(0)),
-            Quantity::PowerError => self.power_error.unwrap_or(0.0),
-            Quantity::Differing => self.differing.unwrap_or(0) as f64,
+            Quantity::Acne => self.acne.map_or(f64::NAN, |count| self.per_million(count)),
+            Quantity::Leaks => self.leaks.map_or(f64::NAN, |count| self.per_million(count)),
+            Quantity::PowerError => self.power_error.unwrap_or(f64::NAN),
+            Quantity::Differing => self.differing.map_or(f64::NAN, |count| count as f64),
         }
     }
 }
@@ -85,14 +103,24 @@ impl Metrics {
 pub enum Quantity {
     /// Wrong rays a million.
     Wrong,
-    /// Wrong rays a million beyond the tier's band around the tangent.
+    /// Wrong rays a million beyond the tier's band around the tangent and the critical angle.
     WrongBeyondBand,
     /// Order inversions a million.
     Inversions,
-    /// Greatest |1 − l²| of a wrong ray.
+    /// How far a wrong ray is from being right, at the most.
     Misclassified,
     /// 99.9th percentile of the relative error, in units of 2⁻²³.
     P999,
+    /// Greatest weighted error of t, in units of 2⁻²³.
+    WorstT,
+    /// Greatest weighted error of the hit point.
+    WorstPlace,
+    /// Greatest weighted error of the normal.
+    WorstNormal,
+    /// Greatest weighted error of the mirrored direction.
+    WorstMirrored,
+    /// Greatest weighted error of N·L.
+    LightError,
     /// Results that are not finite.
     NotFinite,
     /// Acne a million.
@@ -112,7 +140,12 @@ impl fmt::Display for Quantity {
             Self::WrongBeyondBand => "wrong ppm beyond the band",
             Self::Inversions => "inversions ppm",
             Self::Misclassified => "misclassified |1-l²|",
-            Self::P999 => "p99.9",
+            Self::P999 => "p99.9 of t",
+            Self::WorstT => "worst t",
+            Self::WorstPlace => "worst hit point",
+            Self::WorstNormal => "worst normal",
+            Self::WorstMirrored => "worst mirrored direction",
+            Self::LightError => "worst N·L",
             Self::NotFinite => "not finite",
             Self::Acne => "acne ppm",
             Self::Leaks => "leaks ppm",

@@ -3,6 +3,7 @@
 mod classes;
 mod cost;
 mod metrics;
+mod path;
 mod pictures;
 mod rays;
 mod report;
@@ -17,13 +18,17 @@ pub use crate::random::Random;
 pub use classes::{Class, classes};
 pub use cost::{Cost, cost};
 pub use metrics::{Limit, Metrics, Quantity, Target, Verdict};
+pub use path::passage;
 pub use report::table;
 pub use truth::carried;
 
 use crate::gpu::{Error, Gpu, Kernel, Prober, Question};
 use crate::precision::Tier;
+use crate::settings::Specular;
 use classes::{Case, Kind};
-use truth::{Expected, Given, cosines, expected, judge};
+use metrics::U;
+use path::{End, Turn};
+use truth::{Given, blocked, expected, judge, lighting, worse};
 
 /// One case on one kernel.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -54,23 +59,19 @@ impl Row {
     }
 }
 
-/// The tier whose targets judge `kernel`: what goes wrong without a tier's care is judged as that tier.
-fn judged_as(kernel: Kernel) -> Tier {
+/// Which of the promises of [`Case::targets`] judges `kernel`: what goes wrong without a tier's care is judged as that tier.
+fn judged_as(kernel: Kernel) -> usize {
     match kernel {
-        Kernel::Tier(tier) => tier,
-        Kernel::Pairs => Tier::Double,
-        Kernel::Schoolbook => Tier::Fast,
-        Kernel::NoBarrier => Tier::Robust,
+        Kernel::Tier(Tier::Fast) | Kernel::Schoolbook => 0,
+        Kernel::Tier(Tier::Robust) | Kernel::NoBarrier => 1,
+        Kernel::Tier(Tier::Double) => 2,
+        Kernel::Pairs => 3,
     }
 }
 
-/// The |1 − l²| below which a tier may take a miss for a hit and the reverse.
-fn band(tier: Tier) -> f64 {
-    match tier {
-        Tier::Fast => 4e-7,
-        Tier::Robust => 2.5e-7,
-        Tier::Double => 1e-9,
-    }
+/// The |1 − l²| below which a kernel may take a miss for a hit and the reverse.
+fn band(kernel: Kernel) -> f64 {
+    [4e-7, 2.5e-7, 1e-9, 1e-9][judged_as(kernel)]
 }
 
 /// Runs `classes` with `count` rays each on every kernel; `row_done` sees each row as it comes.
@@ -98,7 +99,9 @@ pub fn run(
             let mut shared = Shared::new(case, Random::new(seed, stream), count);
             for (kernel, prober) in &mut probers {
                 let start = Instant::now();
-                let target = case.targets[judged_as(*kernel) as usize].clone();
+                // Without f64 another kernel stands in for `double`.
+                let judged = prober.as_ref().map_or(*kernel, Prober::kernel);
+                let target = case.targets[judged_as(judged)].clone();
                 if target == Target::NotApplicable {
                     continue;
                 }
@@ -134,28 +137,24 @@ struct Shared {
     count: usize,
     batch: crate::gpu::Batch,
     lit: Vec<bool>,
-    truths: [Option<Vec<Expected>>; 2],
+    truths: [Option<Vec<End>>; 2],
 }
 
 impl Shared {
     fn new(case: &Case, mut random: Random, count: usize) -> Self {
         let (batch, lit) = match case.kind {
-            Kind::Rays(generate) | Kind::Refraction(generate) => (generate(&mut random, count), Vec::new()),
-            Kind::Lit(generate) => generate(&mut random, count),
+            Kind::Rays(generate) | Kind::Mirrored(generate) | Kind::Refracted(generate) | Kind::Blocked(generate) => {
+                (generate(&mut random, count), Vec::new())
+            }
+            Kind::Lit(generate) | Kind::Highlight(generate, _) => generate(&mut random, count),
             _ => Default::default(),
         };
         Self { random, count, batch: batch.in_range(), lit, truths: [None, None] }
     }
 
-    fn truth(&mut self, given: Given) -> &[Expected] {
-        let batch = &self.batch;
-        self.truths[given as usize].get_or_insert_with(|| expected(batch, given))
-    }
-
     /// `None` where the case does not concern the kernel.
     fn measure(&mut self, case: &Case, prober: &mut Prober) -> Result<Option<Metrics>, Error> {
         let kernel = prober.kernel();
-        let tier = judged_as(kernel);
         let given = if kernel.carries_low() || kernel.is_double() { Given::Whole } else { Given::Rounded };
         // Every kernel sees the same numbers.
         let mut random = self.random.clone();
@@ -167,14 +166,15 @@ impl Shared {
             Kernel::Pairs | Kernel::Schoolbook | Kernel::NoBarrier => Ok(None),
         };
         match case.kind {
-            Kind::Rays(_) => {
-                let answers = prober.ask(Question::Nearest, &self.batch)?;
-                self.truth(given);
-                let truth = self.truths[given as usize].as_deref().unwrap_or_default();
-                Ok(Some(judge(&self.batch, &answers, truth, given, band(tier))))
+            Kind::Rays(_) => self.measure_path(prober, given, Question::Point, None).map(Some),
+            Kind::Mirrored(_) => self.measure_path(prober, given, Question::Bounce, Some(Turn::Mirrored)).map(Some),
+            Kind::Refracted(_) => {
+                let turn = Turn::Refracted(self.batch.eta);
+                self.measure_path(prober, given, Question::Refract, Some(turn)).map(Some)
             }
+            Kind::Blocked(_) => self.measure_blocked(prober, given).map(Some),
             Kind::Lit(_) => self.measure_light(prober, given).map(Some),
-            Kind::Refraction(_) => special::refraction(prober, given, &self.batch).map(Some),
+            Kind::Highlight(_, model) => self.measure_highlight(prober, given, model).map(Some),
             Kind::ZeroScale => picture(|_, _| Ok(special::zero_scale())),
             Kind::NegativeScale => special::negative_scale(prober, &mut random, self.count).map(Some),
             Kind::BitPatterns => special::bit_patterns(prober, &mut random, 2 * self.count).map(Some),
@@ -187,16 +187,45 @@ impl Shared {
         }
     }
 
+    /// The hit at the end of a path, and its point.
+    fn measure_path(
+        &mut self,
+        prober: &mut Prober,
+        given: Given,
+        question: Question,
+        turn: Option<Turn>,
+    ) -> Result<Metrics, Error> {
+        let answers = prober.ask(question, &self.batch)?;
+        let batch = &self.batch;
+        let truth = self.truths[given as usize].get_or_insert_with(|| expected(batch, given, turn));
+        Ok(judge(batch, &answers, truth, given, band(prober.kernel())))
+    }
+
+    /// Whether something stands between the origin and t = 1.
+    fn measure_blocked(&self, prober: &mut Prober, given: Given) -> Result<Metrics, Error> {
+        let answers = prober.ask(Question::Blocked, &self.batch)?;
+        let mut metrics = Metrics { count: answers.len() as u64, ..Metrics::default() };
+        for (answer, (is_blocked, margin)) in answers.iter().zip(blocked(&self.batch, given)) {
+            if answer.blocked != is_blocked {
+                metrics.false_hits += u64::from(answer.blocked);
+                metrics.false_misses += u64::from(is_blocked);
+                metrics.misclassified = metrics.misclassified.max(margin);
+                metrics.wrong_beyond_band += u64::from(!(margin < band(prober.kernel())));
+            }
+        }
+        Ok(metrics)
+    }
+
     /// Whether the light reaches the hits that it ought to reach, and no others. Rays whose numbers, as the kernel got them,
     /// are nearer to the horizon than the class says do not count.
     fn measure_light(&self, prober: &mut Prober, given: Given) -> Result<Metrics, Error> {
         const HORIZON: f64 = 0.99e-5;
         let answers = prober.ask(Question::Lit, &self.batch)?;
-        let cosines = cosines(&self.batch, given);
+        let truth = lighting(&self.batch, given, Specular::Phong);
         let mut metrics = Metrics { count: answers.len() as u64, ..Metrics::default() };
-        let (mut acne, mut leaks) = (0, 0);
-        for (((answer, ray), &lit), cosine) in answers.iter().zip(&self.batch.rays).zip(&self.lit).zip(cosines) {
-            if cosine.abs() < HORIZON || (lit && cosine < 0.0) {
+        let (mut acne, mut leaks, mut worst) = (0, 0, 0.0);
+        for (((answer, ray), &lit), truth) in answers.iter().zip(&self.batch.rays).zip(&self.lit).zip(truth) {
+            if truth.cosine.abs() < HORIZON || (lit && truth.cosine < 0.0) {
                 continue;
             }
             if !answer.found || answer.surface != ray.first {
@@ -205,11 +234,26 @@ impl Shared {
                 continue;
             }
             metrics.not_finite += u64::from(!answer.value.is_finite());
+            worst = worse(worst, (answer.value - truth.cosine).abs() * truth.seen / U);
             let is_lit = answer.facing && !answer.blocked;
             acne += u64::from(lit && !is_lit);
             leaks += u64::from(!lit && is_lit);
         }
-        (metrics.acne, metrics.leaks) = (Some(acne), Some(leaks));
+        (metrics.acne, metrics.leaks, metrics.light_error) = (Some(acne), Some(leaks), Some(worst));
+        Ok(metrics)
+    }
+
+    /// The specular term.
+    fn measure_highlight(&self, prober: &mut Prober, given: Given, model: Specular) -> Result<Metrics, Error> {
+        let answers = prober.ask(Question::Highlight { blinn: model == Specular::Blinn }, &self.batch)?;
+        let mut metrics = Metrics { count: answers.len() as u64, ..Metrics::default() };
+        let mut worst = 0.0;
+        for (answer, truth) in answers.iter().zip(lighting(&self.batch, given, model)) {
+            metrics.false_misses += u64::from(!answer.found);
+            metrics.not_finite += u64::from(!answer.value.is_finite());
+            worst = worse(worst, (answer.value - truth.highlight).abs() * truth.seen);
+        }
+        metrics.power_error = Some(worst);
         Ok(metrics)
     }
 }

@@ -25,85 +25,126 @@ fn each(count: usize, mut make: impl FnMut(&mut Batch, usize)) -> Batch {
     batch
 }
 
-/// Unit spheres at `distance`, rays around them.
-fn at_distance(random: &mut Random, count: usize, distance: f64) -> Batch {
+/// The semi-axes of a ball of ordinary size; no digits are spared.
+fn ball(random: &mut Random) -> DVec3 {
+    DVec3::splat(random.within(0.3, 3.0))
+}
+
+/// The semi-axes of an ellipsoid of ordinary size and shape.
+fn egg(random: &mut Random) -> DVec3 {
+    shaped(random, DVec3::new(1.0, 0.7, 0.5))
+}
+
+/// Semi-axes near these proportions, of ordinary size.
+fn shaped(random: &mut Random, proportions: DVec3) -> DVec3 {
+    let mut near = || random.within(0.8, 1.25);
+    proportions * DVec3::new(near(), near(), near()) * random.within(0.3, 3.0)
+}
+
+/// A direction of a picture, which may have any length.
+fn of_any_length(random: &mut Random, direction: DVec3) -> DVec3 {
+    direction.normalize() * random.magnitude(-3.0, 3.0)
+}
+
+/// Makes the semi-axes of a body.
+type Axes = fn(&mut Random) -> DVec3;
+
+/// Bodies at `distance` least semi-axes, rays around them.
+fn at_distance(random: &mut Random, count: usize, distance: f64, axes: Axes) -> Batch {
     each(count, |batch, _| {
+        let scale = axes(random);
         let center = random.in_box(2.0);
-        let origin = center + random.unit() * distance;
-        let target = center + random.in_ball() * 1.3;
-        // Directions of a picture are of any length.
-        let direction = (target - origin).normalize() * random.within(0.5, 2.0);
-        add(batch, origin, direction, &[(center, DVec3::ONE)]);
+        let origin = center + random.unit() * (distance * scale.min_element());
+        let target = center + scale * random.in_ball() * 1.3;
+        add(batch, origin, of_any_length(random, target - origin), &[(center, scale)]);
+    })
+}
+
+/// Bodies at `distance` least semi-axes from the world's origin, where the eye of every picture is, and rays around them.
+fn from_eye(random: &mut Random, count: usize, distance: f64, axes: Axes) -> Batch {
+    each(count, |batch, _| {
+        let scale = axes(random);
+        let center = random.unit() * (distance * scale.min_element());
+        let target = center + scale * random.in_ball() * 1.3;
+        add(batch, DVec3::ZERO, of_any_length(random, target), &[(center, scale)]);
     })
 }
 
 pub(super) fn ordinary(random: &mut Random, count: usize) -> Batch {
-    at_distance(random, count, 5.0)
-}
-
-/// Unit spheres at `distance` from the world's origin, where the eye of every picture is, and rays around them.
-fn from_eye(random: &mut Random, count: usize, distance: f64) -> Batch {
-    each(count, |batch, _| {
-        let center = random.unit() * distance;
-        let target = center + random.in_ball() * 1.3;
-        let direction = target.normalize() * random.within(0.5, 2.0);
-        add(batch, DVec3::ZERO, direction, &[(center, DVec3::ONE)]);
-    })
+    at_distance(random, count, 7.0, egg)
 }
 
 pub(super) fn ordinary_eye(random: &mut Random, count: usize) -> Batch {
-    from_eye(random, count, 5.0)
+    from_eye(random, count, 5.0, ball)
 }
 
 pub(super) fn far_3_eye(random: &mut Random, count: usize) -> Batch {
-    from_eye(random, count, 1e3)
+    from_eye(random, count, 1e3, ball)
 }
 
 pub(super) fn far_5_eye(random: &mut Random, count: usize) -> Batch {
-    from_eye(random, count, 1e5)
+    from_eye(random, count, 1e5, egg)
+}
+
+pub(super) fn far_3(random: &mut Random, count: usize) -> Batch {
+    at_distance(random, count, 1e3, egg)
+}
+
+pub(super) fn far_5(random: &mut Random, count: usize) -> Batch {
+    at_distance(random, count, 1e5, ball)
+}
+
+pub(super) fn far_7(random: &mut Random, count: usize) -> Batch {
+    at_distance(random, count, 1e7, egg)
+}
+
+/// How far the line of a ray near a tangent passes from the centre, in radii.
+fn near_tangent(random: &mut Random) -> f64 {
+    (1.0 - random.sign() * random.magnitude(-12.0, -2.0)).sqrt()
 }
 
 pub(super) fn tangent_eye(random: &mut Random, count: usize) -> Batch {
     each(count, |batch, _| {
+        let scale = ball(random);
         let direction = random.unit();
-        let l = (1.0 - random.sign() * random.magnitude(-12.0, -2.0)).sqrt();
-        let center = direction * (25.0 - l * l).sqrt() + random.perpendicular(direction) * l;
-        add(batch, DVec3::ZERO, direction, &[(center, DVec3::ONE)]);
+        let l = near_tangent(random);
+        let center = scale * (direction * (25.0 - l * l).sqrt() + random.perpendicular(direction) * l);
+        add(batch, DVec3::ZERO, direction, &[(center, scale)]);
     })
 }
 
-pub(super) fn far_3(random: &mut Random, count: usize) -> Batch {
-    at_distance(random, count, 1e3)
+pub(super) fn tangent(random: &mut Random, count: usize) -> Batch {
+    each(count, |batch, _| {
+        // Where the body is the unit sphere.
+        let (scale, direction) = (egg(random), random.unit());
+        let l = near_tangent(random);
+        let center = direction * random.within(3.0, 7.0) + random.perpendicular(direction) * l;
+        let origin = random.in_box(2.0);
+        add(batch, origin, scale * direction, &[(origin + scale * center, scale)]);
+    })
 }
 
-pub(super) fn far_5(random: &mut Random, count: usize) -> Batch {
-    at_distance(random, count, 1e5)
-}
-
-pub(super) fn far_7(random: &mut Random, count: usize) -> Batch {
-    at_distance(random, count, 1e7)
-}
-
-/// Spheres of a box that secondary rays see.
-const BOX_SPHERES: usize = 32;
+/// Bodies of a box that secondary rays see.
+const BOX_BODIES: usize = 32;
 
 pub(super) fn secondary(random: &mut Random, count: usize) -> Batch {
     let mut batch = Batch::default();
-    for _ in 0..BOX_SPHERES {
-        let radius = carried(DVec3::splat(random.within(0.1, 2.0)));
-        batch.surfaces.push(Surface { center: carried(random.in_box(10.0)), scale: radius });
+    for index in 0..BOX_BODIES {
+        let scale = DVec3::splat(random.within(0.1, 2.0));
+        let scale = if index % 2 == 0 { scale } else { scale * egg(random) / 3.0 };
+        batch.surfaces.push(Surface { center: carried(random.in_box(10.0)), scale: carried(scale) });
     }
     for _ in 0..count {
-        let own = (random.bits() % BOX_SPHERES as u64) as u32;
+        let own = (random.bits() % BOX_BODIES as u64) as u32;
         let Surface { center, scale } = batch.surfaces[own as usize];
-        let normal = random.unit();
+        let place = random.unit();
         let direction = random.unit();
-        let direction = if direction.dot(normal) < 0.0 { -direction } else { direction };
+        let direction = if direction.dot(place / scale) < 0.0 { -direction } else { direction };
         batch.rays.push(ProbeRay {
-            origin: carried(center + scale * normal),
+            origin: carried(center + scale * place),
             direction: carried(direction),
             first: 0,
-            end: BOX_SPHERES as u32,
+            end: BOX_BODIES as u32,
             primary: false,
             own: Some(own),
         });
@@ -111,41 +152,41 @@ pub(super) fn secondary(random: &mut Random, count: usize) -> Batch {
     batch
 }
 
+/// The Earth as it is, flattened at its poles, with the eye one metre above it.
 pub(super) fn earth(random: &mut Random, count: usize) -> Batch {
-    const RADIUS: f64 = 6.4e6;
+    const SCALE: DVec3 = DVec3::new(6_378_137.0, 6_378_137.0, 6_356_752.314);
     each(count, |batch, _| {
-        let down = random.unit();
+        let place = random.unit();
+        let up = (place / SCALE).normalize();
         // The horizon is 5.6e-4 below the horizontal.
         let dip = random.within(0.0, 2e-3);
-        let ahead = random.perpendicular(down);
-        let direction = ahead * dip.cos() + down * dip.sin();
-        add(batch, DVec3::ZERO, direction, &[(down * (RADIUS + 1.0), DVec3::splat(RADIUS))]);
+        let direction = random.perpendicular(up) * dip.cos() - up * dip.sin();
+        add(batch, DVec3::ZERO, of_any_length(random, direction), &[(-(place * SCALE + up), SCALE)]);
     })
 }
 
-pub(super) fn near_surface(random: &mut Random, count: usize) -> Batch {
+fn above(random: &mut Random, count: usize, axes: Axes) -> Batch {
     each(count, |batch, _| {
-        let center = random.in_box(2.0);
+        let (scale, center) = (axes(random), random.in_box(2.0));
         let height = random.sign() * random.magnitude(-7.0, -2.0);
-        let origin = center + random.unit() * (1.0 + height);
-        add(batch, origin, random.unit(), &[(center, DVec3::ONE)]);
-    })
-}
-
-pub(super) fn tangent(random: &mut Random, count: usize) -> Batch {
-    each(count, |batch, _| {
-        let origin = random.in_box(2.0);
+        let origin = center + scale * random.unit() * (1.0 + height);
         let direction = random.unit();
-        let l = (1.0 - random.sign() * random.magnitude(-12.0, -2.0)).sqrt();
-        let center = origin + direction * random.within(3.0, 7.0) + random.perpendicular(direction) * l;
-        add(batch, origin, direction, &[(center, DVec3::ONE)]);
+        add(batch, origin, of_any_length(random, direction), &[(center, scale)]);
     })
 }
 
-/// An ellipsoid seen from a distance of five times its greatest axis.
-fn seen(random: &mut Random, count: usize, scale: DVec3) -> Batch {
+pub(super) fn near_balls(random: &mut Random, count: usize) -> Batch {
+    above(random, count, ball)
+}
+
+pub(super) fn near_ellipsoids(random: &mut Random, count: usize) -> Batch {
+    above(random, count, egg)
+}
+
+/// An ellipsoid seen from a distance of five times its greatest semi-axis.
+fn seen(random: &mut Random, count: usize, proportions: DVec3) -> Batch {
     each(count, |batch, _| {
-        let center = random.in_box(2.0);
+        let (scale, center) = (shaped(random, proportions), random.in_box(2.0));
         let origin = center + random.unit() * (5.0 * scale.max_element());
         let direction = (center + scale * random.in_ball() * 1.2 - origin).normalize();
         add(batch, origin, direction, &[(center, scale)]);
@@ -161,8 +202,8 @@ pub(super) fn needle(random: &mut Random, count: usize) -> Batch {
 }
 
 pub(super) fn needle_eye(random: &mut Random, count: usize) -> Batch {
-    let scale = DVec3::new(1e-2, 1.0, 100.0);
     each(count, |batch, _| {
+        let scale = shaped(random, DVec3::new(1e-2, 1.0, 100.0));
         let center = random.unit() * (5.0 * scale.max_element());
         let direction = (center + scale * random.in_ball() * 1.2).normalize();
         add(batch, DVec3::ZERO, direction, &[(center, scale)]);
@@ -170,11 +211,11 @@ pub(super) fn needle_eye(random: &mut Random, count: usize) -> Batch {
 }
 
 pub(super) fn disc_from_near(random: &mut Random, count: usize) -> Batch {
-    let scale = DVec3::new(1.0, 1.0, 1e-4);
     each(count, |batch, _| {
+        let scale = shaped(random, DVec3::new(1.0, 1.0, 1e-4));
         let center = random.in_box(2.0);
         let across = random.in_ball() * 0.7;
-        let origin = center + DVec3::new(across.x, across.y, 2e-4);
+        let origin = center + scale * DVec3::new(across.x, across.y, 2.0);
         let direction = (center + scale * random.in_ball() * 1.2 - origin).normalize();
         add(batch, origin, direction, &[(center, scale)]);
     })
@@ -182,21 +223,22 @@ pub(super) fn disc_from_near(random: &mut Random, count: usize) -> Batch {
 
 pub(super) fn translated(random: &mut Random, count: usize) -> Batch {
     let place = DVec3::new(1e6, -1e6, 1e6);
-    let mut batch = Batch::default();
-    for ray in at_distance(random, count, 5.0).rays {
-        let center = ray.origin + ray.direction.normalize() * 5.0 + random.in_ball();
-        add(&mut batch, ray.origin + place, ray.direction, &[(center + place, DVec3::ONE)]);
-    }
-    batch
+    each(count, |batch, _| {
+        let (scale, center) = (ball(random), place + random.in_box(2.0));
+        let origin = center + random.unit() * (5.0 * scale.x);
+        let direction = center + scale * random.in_ball() * 1.3 - origin;
+        add(batch, origin, of_any_length(random, direction), &[(center, scale)]);
+    })
 }
 
-/// Two spheres around one centre, either of them first.
+/// Two bodies around one centre, either of them first.
 fn concentric(random: &mut Random, count: usize, gap: f64) -> Batch {
     each(count, |batch, index| {
+        let scale = if index % 4 < 2 { ball(random) } else { egg(random) };
         let center = random.in_box(2.0);
-        let origin = center + random.unit() * 5.0;
-        let direction = (center + random.in_ball() - origin).normalize();
-        let (inner, outer) = ((center, DVec3::ONE), (center, DVec3::splat(1.0 + gap)));
+        let origin = center + random.unit() * (5.0 * scale.max_element());
+        let direction = (center + scale * random.in_ball() - origin).normalize();
+        let (inner, outer) = ((center, scale), (center, scale * (1.0 + gap)));
         add(batch, origin, direction, &if index % 2 == 0 { [inner, outer] } else { [outer, inner] });
     })
 }
@@ -217,9 +259,26 @@ pub(super) fn concentric_5(random: &mut Random, count: usize) -> Batch {
     concentric(random, count, 1e-5)
 }
 
+/// Two balls that touch from inside, met where they touch: t is the same to the last bit in every precision.
+pub(super) fn internally_tangent(random: &mut Random, count: usize) -> Batch {
+    each(count, |batch, _| {
+        let mut whole = |most: u64| (1 + random.bits() % most) as f64 / 8.0;
+        let (distance, radii) = (whole(64), [whole(64), whole(64)]);
+        let axis = [DVec3::X, DVec3::Y, DVec3::Z][(random.bits() % 3) as usize] * random.sign();
+        let center = DVec3::new(whole_in(random), whole_in(random), whole_in(random));
+        let surface = |radius: f64| (center + axis * (distance + radius), DVec3::splat(radius));
+        add(batch, center, axis, &radii.map(surface));
+    })
+}
+
+/// A number of few bits.
+fn whole_in(random: &mut Random) -> f64 {
+    (random.bits() % 64) as f64 / 4.0 - 8.0
+}
+
 /// The ordinary world times 2 to a power, which keeps every digit.
 fn sized(random: &mut Random, count: usize, power: i32) -> Batch {
-    let mut batch = at_distance(random, count, 5.0);
+    let mut batch = at_distance(random, count, 7.0, egg);
     let k = 2_f64.powi(power);
     for ray in &mut batch.rays {
         (ray.origin, ray.direction) = (ray.origin * k, ray.direction * k);
@@ -242,19 +301,38 @@ pub(super) fn size_1em38(random: &mut Random, count: usize) -> Batch {
     sized(random, count, -126)
 }
 
-pub(super) fn from_inside(random: &mut Random, count: usize) -> Batch {
+fn inside(random: &mut Random, count: usize, axes: Axes) -> Batch {
     each(count, |batch, _| {
-        let center = random.in_box(2.0);
-        let origin = center + random.in_ball() * 0.9;
-        add(batch, origin, random.unit(), &[(center, DVec3::ONE)]);
+        let (scale, center) = (axes(random), random.in_box(2.0));
+        let origin = center + scale * random.in_ball() * 0.9;
+        let direction = random.unit();
+        add(batch, origin, of_any_length(random, direction), &[(center, scale)]);
     })
+}
+
+pub(super) fn inside_balls(random: &mut Random, count: usize) -> Batch {
+    inside(random, count, ball)
+}
+
+pub(super) fn inside_ellipsoids(random: &mut Random, count: usize) -> Batch {
+    inside(random, count, egg)
+}
+
+/// From wall to wall, twice mirrored.
+pub(super) fn mirrored_inside(random: &mut Random, count: usize) -> Batch {
+    Batch { bounces: 2, ..inside(random, count, egg) }
+}
+
+/// From one body of a box to the next one, once mirrored.
+pub(super) fn mirrored(random: &mut Random, count: usize) -> Batch {
+    Batch { bounces: 1, ..secondary(random, count) }
 }
 
 pub(super) fn cut(random: &mut Random, count: usize) -> Batch {
     let mut batch = each(count, |batch, _| {
         let direction = DVec3::new(random.within(-1.0, 1.0), random.within(-1.0, 1.0), -1.0);
-        let center = direction + random.in_ball() * 0.95;
-        add(batch, DVec3::ZERO, direction, &[(center, DVec3::ONE)]);
+        let scale = ball(random);
+        add(batch, DVec3::ZERO, direction, &[(direction + scale * random.in_ball() * 0.95, scale)]);
     });
     batch.rays.iter_mut().for_each(|ray| ray.primary = true);
     batch
@@ -270,6 +348,49 @@ pub(super) fn touching(random: &mut Random, count: usize) -> Batch {
     });
     batch.rays.iter_mut().for_each(|ray| ray.primary = true);
     batch
+}
+
+/// Segments from 0 to 1 that end near a body, before or behind it, begin near one, or pass by one; and such that leave a body.
+fn segments(random: &mut Random, count: usize, axes: Axes) -> Batch {
+    each(count, |batch, index| {
+        let origin = random.in_box(2.0);
+        let direction = random.unit() * random.magnitude(-1.0, 1.0);
+        let scale = axes(random);
+        // Where a ray in this direction meets the body, seen from its centre.
+        let line = (direction / scale).normalize();
+        let aside = random.within(0.0, 0.95);
+        let across = random.perpendicular(line) * aside;
+        let half_chord = line * (1.0 - aside * aside).sqrt();
+        let gap = random.sign() * random.magnitude(-4.0, -1.0);
+        let center = match index % 4 {
+            0 => origin + direction * (1.0 + gap) - scale * (across - half_chord),
+            1 => origin + direction * gap - scale * (across + half_chord),
+            2 => {
+                origin + direction * random.within(-0.5, 1.5)
+                    - scale * random.perpendicular(line) * near_tangent(random)
+            }
+            _ => origin + direction * random.within(-0.5, 1.5) - scale * random.in_ball() * 1.5,
+        };
+        if index % 8 < 4 {
+            add(batch, origin, direction, &[(center, scale)]);
+            return;
+        }
+        let own = axes(random);
+        let place = random.unit();
+        let place = if place.dot(direction / own) < 0.0 { -place } else { place };
+        add(batch, origin, direction, &[(center, scale), (origin - own * place, own)]);
+        if let Some(ray) = batch.rays.last_mut() {
+            ray.own = Some(ray.end - 1);
+        }
+    })
+}
+
+pub(super) fn shadows_of_balls(random: &mut Random, count: usize) -> Batch {
+    segments(random, count, ball)
+}
+
+pub(super) fn shadows_of_ellipsoids(random: &mut Random, count: usize) -> Batch {
+    segments(random, count, egg)
 }
 
 /// Rays along the axis between two facing mirrors, close enough to it to be caught for some bounces.
@@ -289,42 +410,64 @@ pub(super) fn between_mirrors(random: &mut Random, count: usize) -> Batch {
     batch
 }
 
+/// Index of refraction of crown glass, with digits that f32 holds.
+const GLASS: f64 = 1.517_578_125;
+
 /// Rays that go into a body of glass at the origin, or start in it, with a screen of glass around; the screen is met in the end.
-fn through(random: &mut Random, count: usize, scale: DVec3, born_inside: bool, eta: f64, bounces: u32) -> Batch {
+fn through(random: &mut Random, count: usize, axes: Axes, born_inside: bool, eta: f64, bounces: u32) -> Batch {
     let glass = |batch: &mut Batch, random: &mut Random| {
+        let scale = axes(random);
         let target = random.in_ball() * scale;
-        let origin = if born_inside { random.in_ball() * 0.9 * scale } else { random.unit() * 5.0 };
-        let direction = (target - origin).normalize() * random.within(0.5, 2.0);
+        let origin =
+            if born_inside { random.in_ball() * 0.9 * scale } else { random.unit() * 5.0 * scale.max_element() };
+        let direction = of_any_length(random, target - origin);
         let center = random.in_box(2.0);
-        let bodies = [(center, scale), (center + random.in_box(0.5), DVec3::splat(20.0))];
-        add(batch, center + origin, direction, &bodies);
+        let greatest = scale.max_element();
+        let screen = (center + random.in_box(0.5 * greatest), DVec3::splat(random.within(18.0, 22.0) * greatest));
+        add(batch, center + origin, direction, &[(center, scale), screen]);
     };
     Batch { bounces, eta, ..each(count, |batch, _| glass(batch, random)) }
 }
 
 /// In and out of balls.
 pub(super) fn glass_balls(random: &mut Random, count: usize) -> Batch {
-    through(random, count, DVec3::ONE, false, 1.5, 2)
+    through(random, count, ball, false, GLASS, 2)
 }
 
 /// In and out of balls that are all but air, where Snell's law is nearly the identity.
 pub(super) fn thin_air(random: &mut Random, count: usize) -> Batch {
-    through(random, count, DVec3::ONE, false, 1.0 + 1.0 / f64::from(1 << 20), 2)
+    through(random, count, ball, false, 1.0 + 1.0 / f64::from(1 << 20), 2)
 }
 
 /// In and out of ellipsoids.
 pub(super) fn glass_ellipsoids(random: &mut Random, count: usize) -> Batch {
-    through(random, count, DVec3::new(1.0, 0.75, 0.5), false, 1.5, 2)
+    through(random, count, egg, false, GLASS, 2)
 }
 
 /// Bubbles: those beyond the critical angle turn back at once and meet the screen, then leave it.
 pub(super) fn bubbles(random: &mut Random, count: usize) -> Batch {
-    through(random, count, DVec3::ONE, false, 0.75, 2)
+    through(random, count, ball, false, 0.742_187_5, 2)
 }
 
 /// Born in diamonds, reflected from wall to wall.
 pub(super) fn diamonds(random: &mut Random, count: usize) -> Batch {
-    through(random, count, DVec3::new(1.0, 0.75, 0.5), true, 2.5, 4)
+    through(random, count, egg, true, 2.417_968_75, 4)
+}
+
+/// Out of a ball or an ellipsoid near the critical angle.
+pub(super) fn critical(random: &mut Random, count: usize) -> Batch {
+    let out = |batch: &mut Batch, index: usize| {
+        let scale = if index.is_multiple_of(2) { ball(random) } else { egg(random) };
+        let place = random.unit();
+        let normal = (place / scale).normalize();
+        let sine = (1.0 - random.sign() * random.magnitude(-12.0, -2.0)).sqrt() / GLASS;
+        let direction = normal * (1.0 - sine * sine).sqrt() + random.perpendicular(normal) * sine;
+        let (center, place) = (random.in_box(2.0), scale * place);
+        let origin = center + place - direction * (scale.min_element() * random.within(0.1, 0.5));
+        let screen = (center, DVec3::splat(random.within(18.0, 22.0)));
+        add(batch, origin, of_any_length(random, direction), &[(center, scale), screen]);
+    };
+    Batch { bounces: 1, eta: GLASS, ..each(count, out) }
 }
 
 /// What the light of a ray ought to do.
@@ -354,24 +497,43 @@ pub(super) fn terminator(random: &mut Random, count: usize) -> (Batch, Vec<bool>
     (batch, lit)
 }
 
-/// A small sphere at `gap` radii above a unit sphere, in the light of which the ray's hit lies or does not.
+/// Lights near the mirror image of the ray.
+pub(super) fn highlights(random: &mut Random, count: usize) -> (Batch, Vec<bool>) {
+    let mut batch = Batch { exponent: 50.0, ..Batch::default() };
+    for index in 0..count {
+        let scale = if index.is_multiple_of(2) { ball(random) } else { egg(random) };
+        let (center, place) = (random.in_box(2.0), random.unit());
+        let normal = (place / scale).normalize();
+        let (origin, direction) = view(random, DVec3::ZERO, normal);
+        let image = direction - normal * (2.0 * direction.dot(normal));
+        let to_light = image + random.in_ball() * random.magnitude(-4.0, 0.0);
+        let to_light = if to_light.dot(normal) > 0.0 { to_light } else { image };
+        let place = center + scale * place;
+        add(&mut batch, place + origin, direction, &[(center, scale)]);
+        batch.lights.push(carried(place + to_light * random.magnitude(0.0, 2.0)));
+    }
+    (batch, Vec::new())
+}
+
+/// A small ball at `gap` radii above a larger one, in the light of which the ray's hit lies or does not.
 fn contact(random: &mut Random, count: usize, gap: f64) -> (Batch, Vec<bool>) {
     let mut lit = Vec::with_capacity(count);
     let mut batch = Batch::default();
     for _ in 0..count {
-        let center = random.in_box(2.0);
+        let (center, scale) = (random.in_box(2.0), ball(random));
+        let radius = scale.x;
         let normal = random.unit();
         let small = random.magnitude(-4.0, -1.0);
         let across = random.perpendicular(normal);
         let is_lit = random.bits() & 1 == 0;
         let offset = small * if is_lit { random.within(1.2, 3.0) } else { random.within(0.4, 0.8) };
-        let place = center + normal * (1.0 - offset * offset).sqrt() + across * offset;
-        let blocker = center + normal * (1.0 + gap + small);
+        let place = center + (normal * (1.0 - offset * offset).sqrt() + across * offset) * radius;
+        let blocker = center + normal * ((1.0 + gap + small) * radius);
         // Seen from beside the blocker, lit from straight above it.
         let towards = (across * 0.8 + normal * 0.6).normalize();
-        let surfaces = [(center, DVec3::ONE), (blocker, DVec3::splat(small))];
-        add(&mut batch, place + towards * 5.0, -towards, &surfaces);
-        batch.lights.push(carried(place + normal * 10.0));
+        let surfaces = [(center, scale), (blocker, DVec3::splat(small * radius))];
+        add(&mut batch, place + towards * (5.0 * radius), -towards, &surfaces);
+        batch.lights.push(carried(place + normal * (10.0 * radius)));
         lit.push(is_lit);
     }
     (batch, lit)

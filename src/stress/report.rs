@@ -7,7 +7,7 @@ use super::{Row, Verdict};
 /// The head of the table and a line for each row.
 pub fn table(rows: &[Row]) -> String {
     let mut text = format!(
-        "{:>2} {:<15} {:<19} {:<10} {:>8} {:>7} {:>7} {:>7} {:>9} {:>8} {:>9} {:>9} {:>9} {:>8}  {}\n",
+        "{:>2} {:<15} {:<19} {:<10} {:>8} {:>7} {:>7} {:>7} {:>9} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}  {}\n",
         "#",
         "class",
         "case",
@@ -19,7 +19,10 @@ pub fn table(rows: &[Row]) -> String {
         "wrong ppm",
         "p50 u",
         "p99.9 u",
-        "max u",
+        "worst t",
+        "point",
+        "normal",
+        "mirror",
         "|1-l²|",
         "not fin.",
         "verdict"
@@ -42,6 +45,7 @@ pub fn table(rows: &[Row]) -> String {
         remark("leaks", m.leaks);
         remark("differing", m.differing);
         remark("inversions", (m.inversions > 0).then_some(m.inversions));
+        remarks.extend(m.light_error.map(|error| format!("N·L error {error:.1e} u")));
         remarks.extend(m.power_error.map(|error| format!("power error {error:.1e}")));
         remarks.extend((!m.note.is_empty()).then(|| m.note.clone()));
         match &row.verdict {
@@ -51,7 +55,7 @@ pub fn table(rows: &[Row]) -> String {
         }
         let _ = writeln!(
             text,
-            "{:>2} {:<15} {:<19} {:<10} {:>8} {:>7} {:>7} {:>7} {:>9.1} {:>8} {:>9} {:>9} {:>9} {:>8}  {:<11} {}",
+            "{:>2} {:<15} {:<19} {:<10} {:>8} {:>7} {:>7} {:>7} {:>9.1} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}  {:<11} {}",
             row.id,
             row.class,
             row.case,
@@ -63,7 +67,10 @@ pub fn table(rows: &[Row]) -> String {
             m.per_million(m.wrong()),
             error(m.p50),
             error(m.p999),
-            error(m.max),
+            error(m.worst_t),
+            error(m.worst_place),
+            error(m.worst_normal),
+            error(m.worst_mirrored),
             misclassified,
             m.not_finite,
             row.verdict.word(),

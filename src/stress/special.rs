@@ -1,12 +1,9 @@
 //! The classes that are about numbers, bit patterns and host code rather than about rays.
 
 use glam::DVec3;
-use rayon::prelude::*;
 
-use super::metrics::{Metrics, U};
+use super::metrics::Metrics;
 use super::rays;
-use super::truth::Given;
-use crate::cpu::oracle::{Body, refracted};
 use crate::cpu::{Dd, Real};
 use crate::geometry::Ellipsoid;
 use crate::gpu::layout::ShapeValues;
@@ -188,34 +185,6 @@ pub(super) fn transforms(prober: &mut Prober, random: &mut Random) -> Result<Met
         note: format!("residuals lost: {sums} of sums, {products} of products"),
         ..Metrics::default()
     })
-}
-
-/// Class 23: the hit at the end of a path through glass. Wrong: it is another surface, or the same from the other side.
-pub(super) fn refraction(prober: &mut Prober, given: Given, batch: &Batch) -> Result<Metrics, Error> {
-    let answers = prober.ask(Question::Refract, batch)?;
-    let truth = |ray: &ProbeRay| {
-        let ray = given.ray(ray);
-        let surfaces =
-            batch.surfaces[ray.first as usize..ray.end as usize].iter().map(|surface| given.surface(surface));
-        let bodies: Vec<_> = surfaces.map(|s| Body { center: s.center, scale: s.scale, eta: batch.eta }).collect();
-        refracted::<Dd>(ray.origin, ray.direction, &bodies, batch.bounces).hit
-    };
-    let truths: Vec<_> = batch.rays.par_iter().map(truth).collect();
-    let mut metrics = Metrics { count: answers.len() as u64, ..Metrics::default() };
-    let mut errors = Vec::with_capacity(answers.len());
-    for ((answer, ray), truth) in answers.iter().zip(&batch.rays).zip(truths) {
-        metrics.not_finite += u64::from(answer.found && !answer.value.is_finite());
-        match truth {
-            None => metrics.false_hits += u64::from(answer.found),
-            Some(_) if !answer.found => metrics.false_misses += 1,
-            Some((t, body, inside)) if (answer.surface, answer.inside) == (ray.first + body as u32, inside) => {
-                errors.push(((answer.value - t).abs() / t / U) as f32);
-            }
-            Some(_) => metrics.wrong_roots += 1,
-        }
-    }
-    metrics.set_errors(errors);
-    Ok(metrics)
 }
 
 /// Class 21: between facing mirrors errors grow about tenfold a bounce; from which bounce on `f32` and `f64` paths differ by

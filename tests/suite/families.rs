@@ -331,8 +331,8 @@ impl Kinds {
             self.add(format!("a group 1e{power} away"), move |r| {
                 let away = DVec3::new(0.3, 0.2, -1.0) * 10_f64.powi(power);
                 let mut spheres = bodies(r, 12, 1.0, Look { kr: 0.3, ..SHINY });
-                for sphere in &mut spheres {
-                    sphere.center += away;
+                for s in &mut *spheres {
+                    s.center += away;
                 }
                 let lights = two_lights().into_iter().map(|l| Light { position: l.position + away, ..l }).collect();
                 let mut scene = room(spheres, lights);

@@ -108,6 +108,7 @@ fn batches_whose_parts_do_not_fit_together_are_refused() {
         lights: vec![DVec3::ZERO; lights],
         bounces: 1,
         eta: 1.5,
+        exponent: 1.0,
     };
     let mut prober = Prober::new(&gpu, Kernel::Tier(Tier::Fast)).unwrap();
     let good = batch(vec![ray(0, 3, Some(2)), ray(1, 2, None), ray(3, 3, None)], 3);

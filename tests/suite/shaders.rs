@@ -18,7 +18,7 @@ use trueray::settings::Settings;
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use rspirv::dr::{self, Operand};
-use rspirv::spirv::{Decoration, Op};
+use rspirv::spirv::{Decoration, GlslStd450Op, Op, StorageClass};
 
 /// Every kernel, with each way to find what secondary rays meet, and some of the ways to read tables and to walk paths.
 fn kinds() -> impl Iterator<Item = Variant> {
@@ -139,8 +139,14 @@ fn kernels_have_no_branch_that_is_known() {
     }
 }
 
-/// The SPIR-V of every kernel that the kinds have with these flags, with all effects and with few.
-fn every_kernel() -> impl Iterator<Item = (String, dr::Module)> {
+/// The SPIR-V of this entry point.
+fn kernel(module: &Parsed, entry_point: &str, constants: &[(&str, f64)]) -> dr::Module {
+    let bindings: Vec<u32> = (0..32).collect();
+    dr::load_words(module.spirv(entry_point, constants, &bindings).unwrap()).unwrap()
+}
+
+/// Every kernel that the kinds have with these flags, with all effects and with few.
+fn rendering_kernels() -> impl Iterator<Item = (String, dr::Module)> {
     let few = EffectSet::NONE.with(Effect::Diffuse, true);
     let shapes = [None, NonZeroU32::new(3)]
         .into_iter()
@@ -150,62 +156,177 @@ fn every_kernel() -> impl Iterator<Item = (String, dr::Module)> {
     });
     variants.flat_map(move |variant| {
         let module = Parsed::new(&Module::render(&variant)).unwrap();
-        let bindings: Vec<u32> = (0..32).collect();
-        [(EffectSet::ALL, 7), (few, 0)]
-            .into_iter()
-            .flat_map(move |(effects, flags)| {
-                let constants = specialisation(&variant, effects, flags).constants();
-                let kernel = |entry| {
-                    let words = module.spirv(entry, &constants, &bindings).unwrap();
-                    (format!("{entry} of {variant:?}"), dr::load_words(words).unwrap())
-                };
-                entry_points(&variant).into_iter().map(kernel).collect::<Vec<_>>()
-            })
-            .collect::<Vec<_>>()
+        let sets = [(EffectSet::ALL, 7), (few, 0)].into_iter();
+        sets.flat_map(move |(effects, flags)| {
+            let constants = specialisation(&variant, effects, flags).constants();
+            let entry_points = entry_points(&variant).into_iter();
+            let named = |entry| (format!("{entry} of {variant:?}"), kernel(&module, entry, &constants));
+            entry_points.map(named).collect::<Vec<_>>()
+        })
+        .collect::<Vec<_>>()
     })
 }
 
-/// No driver may round otherwise than it is written: one that fuses or reorders does so differently from kernel to kernel.
+/// Every kernel that does something else than render.
+fn other_kernels() -> impl Iterator<Item = (String, dr::Module)> {
+    let tiers = Tier::ALL.map(Kernel::Tier);
+    let all = tiers.into_iter().chain([Kernel::Pairs, Kernel::Schoolbook, Kernel::NoBarrier]);
+    let probes = all.map(Module::probe);
+    let echoes = tiers.map(|kernel| Module::echo(kernel, Textures::Stored));
+    let modules = probes.chain(echoes).chain(tiers.map(Module::resolve)).chain(Fill::ALL.map(Module::fill));
+    let modules = modules.chain([Module::selftest(), Module::flood(), Module::between_stages()]);
+    modules.flat_map(|module| {
+        let entry_points = module.parse().unwrap().entry_points.into_iter().map(|entry| entry.name);
+        let module = Parsed::new(&module).unwrap();
+        entry_points.map(|entry| (entry.clone(), kernel(&module, &entry, &[]))).collect::<Vec<_>>()
+    })
+}
+
 #[test]
-fn no_operation_may_be_contracted() {
-    const ARITHMETIC: [Op; 8] =
-        [Op::FNegate, Op::FAdd, Op::FSub, Op::FMul, Op::FDiv, Op::FRem, Op::VectorTimesScalar, Op::Dot];
-    for (name, kernel) in every_kernel() {
-        let exact: HashSet<_> = kernel
-            .annotations
-            .iter()
-            .filter(|it| it.operands[1..] == [Operand::Decoration(Decoration::NoContraction)])
-            .map(|it| it.operands[0].unwrap_id_ref())
-            .collect();
-        let arithmetic = kernel.all_inst_iter().filter(|it| ARITHMETIC.contains(&it.class.opcode));
-        let results: Vec<_> = arithmetic.map(|it| it.result_id.unwrap()).collect();
-        assert!(results.len() > 20, "{name}");
-        assert!(results.iter().all(|result| exact.contains(result)), "{name}");
+fn every_kernel_is_sound() {
+    let mut count = 0;
+    for (name, kernel) in rendering_kernels() {
+        assert_eq!(kernel.functions.len(), 1, "{name} calls something");
+        assert_well_formed(&name, &kernel);
+        assert_layouts_are_allowed(&name, &kernel);
+        assert!(rounded_as_written(&name, &kernel) > 20, "{name}");
+        count += 1;
+    }
+    assert!(count > 200, "{count}");
+    for (name, kernel) in other_kernels() {
+        assert_well_formed(&name, &kernel);
+        assert_layouts_are_allowed(&name, &kernel);
+        rounded_as_written(&name, &kernel);
     }
 }
 
-/// A kernel is one function, in which everything is defined once and before it is used.
-#[test]
-fn kernels_call_nothing() {
-    for (name, kernel) in every_kernel() {
-        assert_eq!(kernel.functions.len(), 1, "{name}");
-        let mut defined: HashSet<_> = kernel.global_inst_iter().filter_map(|it| it.result_id).collect();
-        let labels: Vec<_> = kernel.functions[0].blocks.iter().map(|block| block.label_id().unwrap()).collect();
+/// No driver may round otherwise than it is written: one that fuses or reorders does so differently from kernel to kernel. The
+/// number of operations that round.
+fn rounded_as_written(name: &str, kernel: &dr::Module) -> usize {
+    // What rounds once, by itself.
+    const ROUNDED: [Op; 6] = [Op::FNegate, Op::FAdd, Op::FSub, Op::FMul, Op::FDiv, Op::VectorTimesScalar];
+    // What does not round, or has but one way to.
+    const MOVED: [Op; 10] = [
+        Op::Load,
+        Op::CompositeConstruct,
+        Op::CompositeExtract,
+        Op::CompositeInsert,
+        Op::VectorShuffle,
+        Op::Select,
+        Op::Bitcast,
+        Op::ConvertSToF,
+        Op::ConvertUToF,
+        Op::FConvert,
+    ];
+    // The others stand for several operations, which drivers fuse as they like.
+    const EXTENDED: [GlslStd450Op; 6] = [
+        GlslStd450Op::FAbs,
+        GlslStd450Op::Floor,
+        GlslStd450Op::Sqrt,
+        GlslStd450Op::FMin,
+        GlslStd450Op::FMax,
+        GlslStd450Op::FClamp,
+    ];
+    let exact: HashSet<_> = kernel
+        .annotations
+        .iter()
+        .filter(|it| it.operands[1..] == [Operand::Decoration(Decoration::NoContraction)])
+        .map(|it| it.operands[0].unwrap_id_ref())
+        .collect();
+    let mut floats = HashSet::new();
+    for ty in &kernel.types_global_values {
+        let is_float = match ty.class.opcode {
+            Op::TypeFloat => true,
+            Op::TypeVector => floats.contains(&ty.operands[0].unwrap_id_ref()),
+            _ => false,
+        };
+        floats.extend(ty.result_id.filter(|_| is_float));
+    }
+    let mut count = 0;
+    for it in kernel.functions.iter().flat_map(|function| &function.blocks).flat_map(|block| &block.instructions) {
+        if it.result_type.is_none_or(|ty| !floats.contains(&ty)) {
+            continue;
+        }
+        if it.class.opcode == Op::ExtInst {
+            let operation = it.operands[1].unwrap_literal_ext_inst_integer();
+            assert!(EXTENDED.iter().any(|&known| known as u32 == operation), "{name}: {it:?}");
+        } else if !ROUNDED.contains(&it.class.opcode) {
+            assert!(MOVED.contains(&it.class.opcode), "{name}: {it:?}");
+            continue;
+        }
+        assert!(exact.contains(&it.result_id.unwrap()), "{name}: {it:?}");
+        count += 1;
+    }
+    count
+}
+
+/// What has an explicit layout lies in buffers; up to SPIR-V 1.4 variables of a kernel may have such types too
+/// (VUID-StandaloneSpirv-None-10684).
+fn assert_layouts_are_allowed(name: &str, kernel: &dr::Module) {
+    let is_layout = |decoration: &Operand| {
+        matches!(
+            decoration,
+            Operand::Decoration(Decoration::Offset | Decoration::ArrayStride | Decoration::MatrixStride)
+        )
+    };
+    let laid_out = kernel.annotations.iter().filter(|it| it.operands.iter().any(is_layout));
+    let mut laid_out: HashSet<_> = laid_out.map(|it| it.operands[0].unwrap_id_ref()).collect();
+    // Types come before those that contain them.
+    for ty in &kernel.types_global_values {
+        if ty.operands.iter().any(|part| part.id_ref_any().is_some_and(|part| laid_out.contains(&part))) {
+            laid_out.extend(ty.result_id);
+        }
+    }
+    let may_have_layout = |class: StorageClass| match class {
+        StorageClass::Uniform | StorageClass::StorageBuffer => true,
+        StorageClass::Function | StorageClass::Private => kernel.header.as_ref().unwrap().version() <= (1, 4),
+        _ => false,
+    };
+    for variable in kernel.all_inst_iter().filter(|it| it.class.opcode == Op::Variable) {
+        let class = variable.operands[0].unwrap_storage_class();
+        assert!(may_have_layout(class) || !laid_out.contains(&variable.result_type.unwrap()), "{name}: {variable:?}");
+    }
+}
+
+/// Everything is defined once and before it is used.
+fn assert_well_formed(name: &str, kernel: &dr::Module) {
+    let mut defined: HashSet<_> = kernel.global_inst_iter().filter_map(|it| it.result_id).collect();
+    defined.extend(kernel.functions.iter().filter_map(dr::Function::def_id));
+    for function in &kernel.functions {
+        let labels: Vec<_> = function.blocks.iter().map(|block| block.label_id().unwrap()).collect();
         // Branches go forward.
         defined.extend(&labels);
         assert_eq!(labels.iter().collect::<HashSet<_>>().len(), labels.len(), "{name}");
-        let (variables, rest): (Vec<_>, Vec<_>) = kernel.functions[0]
-            .all_inst_iter()
-            .filter(|it| it.class.opcode != Op::Label)
-            .partition(|it| it.class.opcode == Op::Variable);
-        for instruction in [variables, rest].concat() {
+        let parameters = function.parameters.iter();
+        let instructions = function.blocks.iter().flat_map(|block| &block.instructions);
+        let (variables, rest): (Vec<_>, Vec<_>) = instructions.partition(|it| it.class.opcode == Op::Variable);
+        for instruction in parameters.chain(variables).chain(rest) {
             let ids = instruction.operands.iter().filter_map(Operand::id_ref_any).chain(instruction.result_type);
             assert!(ids.into_iter().all(|id| defined.contains(&id)), "{name}: {instruction:?}");
             assert!(instruction.result_id.is_none_or(|id| defined.insert(id)), "{name}: {instruction:?}");
         }
-        let bound = kernel.header.unwrap().bound;
-        assert!(defined.iter().all(|&id| id < bound), "{name}");
     }
+    let bound = kernel.header.as_ref().unwrap().bound;
+    assert!(defined.iter().all(|&id| id < bound), "{name}");
+}
+
+/// Products of vectors of every size, as they are written out.
+#[test]
+fn products_of_vectors_are_written_out() {
+    let mut module = Module::selftest();
+    module.text = "
+        @group(0) @binding(0) var<storage, read_write> v: array<vec4<f32>, 4>;
+        @compute @workgroup_size(1) fn main() {
+            let three = cross(v[0].xyz, v[1].xyz);
+            v[2] = vec4(three, dot(v[0].xy, v[1].xy));
+            v[3] = vec4(dot(three, v[0].xyz), dot(v[0], v[1]), f32(dot(bitcast<vec2<i32>>(v[0].xy), vec2(2, 3))), 0.0);
+        }
+    "
+    .into();
+    let kernel = kernel(&Parsed::new(&module).unwrap(), "main", &[]);
+    assert_well_formed("products", &kernel);
+    // Two products and their difference; then those of 2, 3 and 4 components and 1, 2 and 3 sums.
+    assert_eq!(rounded_as_written("products", &kernel), 3 + 2 + 3 + 4);
 }
 
 /// What the shaders of this project have little of: returns before the end, pointers, variables that begin anew with each call.
@@ -226,8 +347,7 @@ fn calls_are_inlined_but_of_functions_that_return_early() {
         }
     "
     .into();
-    let words = Parsed::new(&module).unwrap().spirv("main", &[], &[0]).unwrap();
-    let kernel = dr::load_words(words).unwrap();
+    let kernel = kernel(&Parsed::new(&module).unwrap(), "main", &[]);
     let calls =
         |function: &dr::Function| function.all_inst_iter().filter(|it| it.class.opcode == Op::FunctionCall).count();
     // The one that returns early, without its own call, and the kernel with the call of it.

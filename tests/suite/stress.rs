@@ -1,8 +1,11 @@
 //! The hard cases at reduced counts: promises hold, and what lacks their care breaks them.
 
+use glam::DVec3;
+use trueray::cpu::Dd;
+use trueray::cpu::oracle::{Body, refracted};
 use trueray::gpu::Kernel;
 use trueray::precision::Tier;
-use trueray::stress::{Class, Row, Verdict, classes, run, table};
+use trueray::stress::{Class, Limit, Quantity, Random, Row, Target, Verdict, classes, passage, run, table};
 
 use crate::support::{gpu, say_skipped};
 
@@ -20,7 +23,7 @@ fn named(names: &[&str]) -> Vec<Class> {
 #[test]
 fn classes_are_numbered_as_in_the_catalogue() {
     let numbers: Vec<_> = classes().iter().map(|class| class.id).collect();
-    assert_eq!(numbers, (1..=23).collect::<Vec<_>>());
+    assert_eq!(numbers, (1..=25).collect::<Vec<_>>());
 }
 
 #[test]
@@ -34,6 +37,76 @@ fn every_tier_keeps_its_promises() {
     }
     let broken = broken(&rows);
     assert!(broken.is_empty(), "\n{}", table(&broken));
+    assert_limits_are_near(&rows);
+}
+
+/// Limits that nothing comes near would let broken kernels pass.
+fn assert_limits_are_near(rows: &[Row]) {
+    let mut count = 0;
+    for row in rows {
+        let Target::Limits(limits) = &row.target else { continue };
+        for &Limit { quantity, at_most } in limits {
+            let m = &row.metrics;
+            let measured = match quantity {
+                Quantity::P999 => m.p999,
+                Quantity::WorstT => m.worst_t,
+                Quantity::WorstPlace => m.worst_place,
+                Quantity::WorstNormal => m.worst_normal,
+                Quantity::WorstMirrored => m.worst_mirrored,
+                Quantity::LightError => m.light_error,
+                Quantity::PowerError => m.power_error,
+                _ => continue,
+            };
+            count += 1;
+            let (class, case, kernel) = (row.class, row.case, row.kernel);
+            let near = measured.unwrap() * 40.0 >= at_most;
+            assert!(near, "{class}, {case} at {kernel}: {quantity} {measured:?}, limited to {at_most}");
+        }
+    }
+    assert!(count > 400, "{count}");
+}
+
+/// Snell's law where all of its numbers are rational: 63² + 16² = 56² + 33² = 65², and 63/56 is 9/8.
+#[test]
+fn the_truth_of_refraction_is_exact() {
+    let body = |eta| Body { center: DVec3::ZERO, scale: DVec3::splat(65.0), eta };
+    let screen = Body { center: DVec3::ZERO, scale: DVec3::splat(2000.0), eta: 1.0 };
+    let (origin, direction) = (DVec3::new(63.0, 0.0, 1000.0), DVec3::NEG_Z);
+    let into = passage(origin, direction, &[body(1.125), screen], 1);
+    assert_eq!(into.origin, DVec3::new(63.0, 0.0, 16.0));
+    assert_eq!(into.direction, DVec3::new(-7.0 / 25.0, 0.0, -24.0 / 25.0));
+    assert_eq!(into.hit, Some((66.0, 0, true)));
+    // Out again where 63 − 66·7/25 and 16 − 66·24/25 are, turned by as much once more: by twice the angle of (−7, −24)/25.
+    let out = passage(origin, direction, &[body(1.125), screen], 2);
+    assert_eq!(out.origin, DVec3::new(44.52, 0.0, -47.36));
+    assert_eq!(out.direction, DVec3::new(-336.0 / 625.0, 0.0, -527.0 / 625.0));
+    // With 65/56 = 1.16… or more, none of it would get out.
+    let total = passage(DVec3::new(56.0, 0.0, 0.0), direction, &[body(1.25), screen], 1);
+    assert_eq!(total.origin, DVec3::new(56.0, 0.0, -33.0));
+    assert_eq!(total.hit, Some((66.0, 0, true)));
+}
+
+/// Two formulas that have nothing in common agree on paths through glass.
+#[test]
+fn the_truth_of_refraction_agrees_with_the_formula_of_the_reference() {
+    let mut random = Random::new(SEED, 0);
+    let mut hits = 0;
+    for _ in 0..2000 {
+        let eta = random.within(0.5, 2.5);
+        let scale = DVec3::new(random.within(0.3, 2.0), random.within(0.3, 2.0), random.within(0.3, 2.0));
+        let origin = random.unit() * 6.0;
+        let direction = scale * random.in_ball() - origin;
+        let screen = Body { center: random.in_box(0.5), scale: DVec3::splat(20.0), eta };
+        let bodies = [Body { center: DVec3::ZERO, scale, eta }, screen];
+        for bounces in 1..4 {
+            let [ours, other] = [passage, refracted::<Dd>].map(|path| path(origin, direction, &bodies, bounces));
+            let same = |a: DVec3, b: DVec3| (a - b).length() <= 1e-15 * (1.0 + b.length());
+            assert!(same(ours.origin, other.origin) && same(ours.direction, other.direction), "{ours:?}, {other:?}");
+            assert_eq!(ours.hit.map(|hit| (hit.1, hit.2)), other.hit.map(|hit| (hit.1, hit.2)));
+            hits += usize::from(ours.hit.is_some());
+        }
+    }
+    assert!(hits > 4000, "{hits}");
 }
 
 #[test]
@@ -81,7 +154,6 @@ fn the_same_seed_gives_the_same_numbers() {
 /// A few rays by hand through the batch path.
 #[test]
 fn batches_find_the_nearest_hit() {
-    use glam::DVec3;
     use trueray::gpu::{Batch, ProbeRay, Prober, Question, Surface};
 
     let Some(gpu) = gpu("batches_find_the_nearest_hit") else { return };

@@ -22,7 +22,8 @@ impl Batch {
                 format!("ray {index} leaves surface {:?}, which is none of {first} to {end}", ray.own)
             })?;
         }
-        let lights = if question == Question::Lit { rays } else { 0 };
+        let is_lit = matches!(question, Question::Lit | Question::Highlight { .. });
+        let lights = if is_lit { rays } else { 0 };
         require(self.lights.len() == lights || self.lights.len() == rays, || {
             format!("{} lights for {rays} rays", self.lights.len())
         })?;

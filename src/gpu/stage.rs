@@ -1,0 +1,147 @@
+//! A compiled kernel: the only place that makes pipelines, for pictures and for everything else.
+
+use super::device::Gpu;
+use super::error::Error;
+use super::kernel_cache::KernelCache;
+use super::shader::Textures;
+use super::spirv::Parsed;
+use super::upload::texel_format;
+
+/// Textures that a kernel reads and writes at the most, whatever it is specialised for.
+pub(super) const MAX_TEXTURES: u32 = 13;
+
+/// How a binding is used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Access {
+    Uniform,
+    Read,
+    ReadWrite,
+    /// A table with so many `u32` a texel.
+    Table(Textures, u32),
+    /// A texture with so many `u32` a texel that is written.
+    Texels(u32),
+}
+
+impl Access {
+    fn binding_type(self) -> wgpu::BindingType {
+        let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+        let view_dimension = wgpu::TextureViewDimension::D2;
+        let storage_texture = |access, components| wgpu::BindingType::StorageTexture {
+            access,
+            format: texel_format(components),
+            view_dimension,
+        };
+        match self {
+            Self::Uniform => buffer(wgpu::BufferBindingType::Uniform),
+            Self::Read => buffer(wgpu::BufferBindingType::Storage { read_only: true }),
+            Self::ReadWrite => buffer(wgpu::BufferBindingType::Storage { read_only: false }),
+            Self::Table(Textures::Sampled, _) => wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Uint,
+                view_dimension,
+                multisampled: false,
+            },
+            Self::Table(Textures::Stored, components) => {
+                storage_texture(wgpu::StorageTextureAccess::ReadOnly, components)
+            }
+            Self::Texels(components) => storage_texture(wgpu::StorageTextureAccess::WriteOnly, components),
+        }
+    }
+
+    fn is_texture(self) -> bool {
+        matches!(self, Self::Table(..) | Self::Texels(_))
+    }
+}
+
+/// What a binding is bound to.
+#[derive(Debug, Clone)]
+pub(super) enum Resource {
+    Buffer(wgpu::Buffer),
+    Texels(wgpu::TextureView),
+}
+
+impl Resource {
+    fn as_binding(&self) -> wgpu::BindingResource<'_> {
+        match self {
+            Self::Buffer(buffer) => buffer.as_entire_binding(),
+            Self::Texels(view) => wgpu::BindingResource::TextureView(view),
+        }
+    }
+}
+
+/// A compiled kernel and the bindings that it reads and writes.
+#[derive(Debug)]
+pub(super) struct Stage {
+    pub(super) pipeline: wgpu::ComputePipeline,
+    layout: wgpu::BindGroupLayout,
+    bindings: Vec<u32>,
+}
+
+impl Stage {
+    /// Compiles this entry point of `module` with these constants; `bindings` are all that it uses.
+    pub(super) fn new(
+        gpu: &Gpu,
+        module: &Parsed,
+        entry_point: &str,
+        constants: &[(&str, f64)],
+        bindings: &[(u32, Access)],
+    ) -> Result<Self, Error> {
+        let entry = |&(binding, access): &(u32, Access)| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty: access.binding_type(),
+            count: None,
+        };
+        debug_assert!(bindings.iter().filter(|(_, access)| access.is_texture()).count() <= MAX_TEXTURES as usize);
+        let most = gpu.device.limits().max_storage_buffers_per_shader_stage;
+        let buffers = bindings.iter().filter(|(_, access)| matches!(access, Access::Read | Access::ReadWrite)).count();
+        if buffers > most as usize {
+            let message =
+                format!("{} has {most} storage buffers for a kernel, but {entry_point} uses {buffers}", gpu.info);
+            return Err(Error::NoDevice(message));
+        }
+        let entries: Vec<_> = bindings.iter().map(entry).collect();
+        let mut bindings: Vec<_> = bindings.iter().map(|(binding, _)| *binding).collect();
+        bindings.sort_unstable();
+        let module = gpu.kernel_module(module, entry_point, constants, &bindings)?;
+        gpu.checked("compiling the kernels", || {
+            let descriptor = wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries };
+            let layout = gpu.device.create_bind_group_layout(&descriptor);
+            let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: None,
+                bind_group_layouts: &[Some(&layout)],
+                immediate_size: 0,
+            });
+            let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(entry_point),
+                layout: Some(&pipeline_layout),
+                module: &module,
+                entry_point: Some(entry_point),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                cache: gpu.kernel_cache.as_ref().map(KernelCache::handle),
+            });
+            Self { pipeline, layout, bindings }
+        })
+    }
+
+    /// Binds those of `resources` that the kernel uses.
+    pub(super) fn bind(&self, gpu: &Gpu, resources: &[(u32, Resource)]) -> wgpu::BindGroup {
+        let used = resources.iter().filter(|(binding, _)| self.bindings.contains(binding));
+        let entries: Vec<_> = used
+            .map(|(binding, resource)| wgpu::BindGroupEntry { binding: *binding, resource: resource.as_binding() })
+            .collect();
+        let descriptor = wgpu::BindGroupDescriptor { label: None, layout: &self.layout, entries: &entries };
+        gpu.device.create_bind_group(&descriptor)
+    }
+
+    /// Runs the kernel with what is bound, in so many workgroups side by side and above each other: a submission of its own.
+    pub(super) fn dispatch(&self, gpu: &Gpu, group: &wgpu::BindGroup, [across, down]: [u32; 2]) {
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(0, group, &[]);
+            pass.dispatch_workgroups(across, down, 1);
+        }
+        gpu.queue.submit([encoder.finish()]);
+    }
+}

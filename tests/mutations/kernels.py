@@ -1,0 +1,138 @@
+#!/usr/bin/env python3
+"""Plants the faults of kernels.txt in a copy of the shaders, one at a time: `trueray stress` has to catch each of them.
+
+    python3 tests/mutations/kernels.py --check         only says which faults no longer apply; nothing is compiled
+    python3 tests/mutations/kernels.py                 all faults; writes tests/mutations/kernels.md
+    python3 tests/mutations/kernels.py --only TEXT     those with TEXT in their names; the table stays as it is
+
+The copy, in target/kernels/, reads its shaders when it runs, so that it is compiled once. Each fault then takes as long as
+`trueray stress` at its default counts. The exit code is 0 if every fault applies and breaks a promise.
+"""
+
+import argparse
+import json
+import os
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+TREE = ROOT / "target" / "kernels" / "tree"
+TARGET = ROOT / "target" / "kernels" / "target"
+
+# Where the copy takes its shaders from.
+READ_WHEN_COMPILED = 'Cow::Borrowed(include_str!(concat!("../../shaders/", $name)))'
+READ_WHEN_RUN = 'Cow::Owned(std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $name)).unwrap())'
+
+
+def parse(text):
+    """Name -> (file, times, old, new)."""
+    faults = {}
+    for line in text.splitlines():
+        if not line or line.startswith("#"):
+            continue
+        if line.startswith("["):
+            name = line[1:-1]
+            assert name not in faults, f"{name} is there twice"
+        elif line.startswith("- "):
+            faults[name][2] = line[2:]
+        elif line.startswith("+ "):
+            faults[name][3] = line[2:]
+        else:
+            file, _, times = line.partition(" x")
+            faults[name] = [file, int(times or 1), "", ""]
+    return faults
+
+
+def problems(faults):
+    """What keeps faults from being planted, one line each."""
+    for name, (file, times, old, _) in faults.items():
+        found = (ROOT / file).read_text().count(old)
+        if not old or found != times:
+            yield f"{name}: {found} times, not {times}, in {file}: {old}"
+
+
+def build():
+    """A copy of the tree that reads its shaders when it runs, compiled."""
+    shutil.rmtree(TREE, ignore_errors=True)
+    for name in ["Cargo.toml", "Cargo.lock", "src", "shaders"]:
+        source = ROOT / name
+        if source.is_dir():
+            shutil.copytree(source, TREE / name)
+        else:
+            TREE.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(source, TREE / name)
+    shader = TREE / "src/gpu/shader.rs"
+    text = shader.read_text()
+    assert text.count(READ_WHEN_COMPILED) == 1, "shaders are read otherwise now"
+    shader.write_text(text.replace(READ_WHEN_COMPILED, READ_WHEN_RUN))
+    # For this alone it need not be compiled for as long as a release is.
+    profile = dict(CARGO_PROFILE_RELEASE_LTO="off", CARGO_PROFILE_RELEASE_CODEGEN_UNITS="16")
+    environment = dict(os.environ, CARGO_TARGET_DIR=str(TARGET), **profile)
+    command = ["cargo", "build", "--locked", "--release", "--no-default-features", "--bin", "trueray"]
+    subprocess.run(command, cwd=TREE, env=environment, check=True)
+    return TARGET / "release" / "trueray"
+
+
+def stress(program):
+    """The rows of broken promises, or what went wrong otherwise."""
+    done = subprocess.run([program, "stress", "--json"], capture_output=True, text=True, errors="replace")
+    if done.returncode not in (0, 1):
+        return [], done.stderr.strip() or f"exit code {done.returncode}"
+    return [row for row in json.loads(done.stdout)["rows"] if row["verdict"]["is"] == "fail"], None
+
+
+def in_words(row):
+    case = f"{row['class']}, {row['case']}" if row["case"] else row["class"]
+    return f"{case} at {row['kernel']}: {row['verdict']['why'][0]}"
+
+
+def main():
+    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    arguments.add_argument("--check", action="store_true")
+    arguments.add_argument("--only", default="", metavar="TEXT")
+    arguments = arguments.parse_args()
+    every = parse((HERE / "kernels.txt").read_text())
+    faults = {name: fault for name, fault in every.items() if arguments.only in name}
+    unfit = list(problems(faults))
+    print("\n".join(unfit + [f"{len(faults)} faults, {len(unfit)} places that do not fit"]), flush=True)
+    if arguments.check or unfit or not faults:
+        return bool(unfit or not faults)
+
+    program = build()
+    broken, trouble = stress(program)
+    if broken or trouble:
+        print("without any fault: " + (trouble or "; ".join(map(in_words, broken))))
+        return True
+
+    rows, escaped = [], []
+    for name, (file, _, old, new) in faults.items():
+        start = time.monotonic()
+        text = (ROOT / file).read_text()
+        (TREE / file).write_text(text.replace(old, new))
+        try:
+            broken, trouble = stress(program)
+        finally:
+            (TREE / file).write_text(text)
+        if not broken:
+            escaped.append(name)
+        first = in_words(broken[0]) if broken else trouble or "**nothing**"
+        rows.append(f"| {name} | {file} | {len(broken)} | {first} | {time.monotonic() - start:.0f} |")
+        print(rows[-1], flush=True)
+    caught = f"{len(faults) - len(escaped)} of {len(faults)} faults caught"
+    if not arguments.only:
+        head = (
+            f"# Planted faults of kernels\n\n{caught} by `trueray stress` at its default counts; written by "
+            "`python3 tests/mutations/kernels.py`. How many promises break, and the first of them.\n\n"
+            "| fault | file | broken | first | s |\n|---|---|---|---|---|\n"
+        )
+        (HERE / "kernels.md").write_text(head + "\n".join(rows) + "\n")
+    print(caught + "".join(f"\nnot caught: {name}" for name in escaped))
+    return bool(escaped)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
