@@ -2,10 +2,11 @@
 
 // The nearest intersection in the range; of equal ones the lowest index.
 fn nearest_hit(ray: Ray, own: Own, within: Range) -> Hit {
+    let exit = exit_of(own, ray);
     var range = within;
     var nearest = no_hit();
     for (var sphere = first_sphere(); sphere < sphere_count(); sphere++) {
-        let root = accepted_root(ray, body_of(sphere), own, range);
+        let root = accepted_root(ray, body_of(sphere), exit, range);
         nearest = nearer_hit(nearest, Hit(true, root.t, sphere, root.inside), root.counts);
         range.t_max = either(range.t_max, root.t, root.counts);
     }
@@ -14,9 +15,10 @@ fn nearest_hit(ray: Ray, own: Own, within: Range) -> Hit {
 
 // Whether any sphere stands between the ray's origin and the light with this index, at t = 1.
 fn any_hit(ray: Ray, own: Own, light: Light, index: u32, is_asked: bool) -> bool {
+    let exit = exit_of(own, ray);
     var blocked = false;
     for (var sphere = first_sphere(); sphere < sphere_count() && !blocked; sphere++) {
-        blocked = blocks(ray, body_of(sphere), own, params.shadow_t_min);
+        blocked = blocks(ray, body_of(sphere), exit, params.shadow_t_min);
     }
     return blocked;
 }

@@ -52,7 +52,7 @@ fn begin_walk(ray: Ray) -> Walk {
 }
 
 // One turn: the nearer of a hit and the intersection with a sphere, if there is one left in the cell.
-fn take_turn(walk: ptr<function, Walk>, nearest: ptr<function, Hit>, ray: Ray, own: Own, range: Range) {
+fn take_turn(walk: ptr<function, Walk>, nearest: ptr<function, Hit>, ray: Ray, own_exit: Exit, range: Range) {
     // What this turn finds counts from the next one on, which costs a step and lets the two overlap.
     let known = *nearest;
     // From the place of the wall, since a sum would drift.
@@ -72,7 +72,7 @@ fn take_turn(walk: ptr<function, Walk>, nearest: ptr<function, Hit>, ray: Ray, o
     let wall = (*walk).wall + select(vec3<f32>(), (*walk).step, vec3<bool>(is_x, is_y, !is_x & !is_y));
     if (*walk).list.x < (*walk).list.y {
         let sphere = entry_at((*walk).list.x);
-        *nearest = nearer_of(known, ray, body_in_grid((*walk).list.x, sphere), sphere, own, range);
+        *nearest = nearer_of(known, ray, body_in_grid((*walk).list.x, sphere), sphere, own_exit, range);
         (*walk).list.x++;
     }
     if (*walk).list.x >= (*walk).list.y {
@@ -84,11 +84,11 @@ fn take_turn(walk: ptr<function, Walk>, nearest: ptr<function, Hit>, ray: Ray, o
 }
 
 // The nearer of a hit and the intersections with the spheres in the grid.
-fn nearest_in_grid(before: Hit, ray: Ray, own: Own, range: Range) -> Hit {
+fn nearest_in_grid(before: Hit, ray: Ray, exit: Exit, range: Range) -> Hit {
     var nearest = before;
     var walk = begin_walk(ray);
     loop {
-        take_turn(&walk, &nearest, ray, own, range);
+        take_turn(&walk, &nearest, ray, exit, range);
         if !walk.goes_on {
             break;
         }

@@ -39,14 +39,23 @@ fn reflection_range() -> Range {
     return Range(params.reflection_t_min, distance_of(FAR), true);
 }
 
-// Where a ray that starts on the inner wall leaves its own sphere: C = 0, so t = -2B/A and no quadratic is needed.
-fn exit_root(own: Own, direction_in_world: vec3r, body: Body) -> real {
-    var direction = direction_in_world;
+// Where a ray meets its own sphere once more: once for each ray, not for each sphere that it is tested against.
+struct Exit {
+    // Shape index of the sphere.
+    shape: u32,
+    // Whether it does: the outside of a convex surface is never met again.
+    exists: bool,
+    t: real,
+}
+
+// A ray that starts on the inner wall leaves its sphere where C = 0, so t = -2B/A and no quadratic is needed.
+fn exit_of(own: Own, ray: Ray) -> Exit {
+    var direction = direction_of(ray);
     if ELLIPSOIDS {
-        direction *= body.shape.inv_scale;
+        direction *= shape_of(select(own.shape, 0u, own.shape == NO_SHAPE)).inv_scale;
     }
     let projection = -dot(own.local, direction);
-    return (projection + projection) / dot(direction, direction);
+    return Exit(own.shape, own.inside, (projection + projection) / dot(direction, direction));
 }
 
 // The least root of one sphere that counts.
@@ -57,19 +66,22 @@ struct Root {
     inside: bool,
 }
 
-fn accepted_root(ray: Ray, body: Body, own: Own, range: Range) -> Root {
+// Of a sphere that the ray does not leave.
+fn other_root(ray: Ray, body: Body, range: Range) -> Root {
     let roots = roots(ray, body);
     let is_lesser = is_beyond(roots.lesser, range.t_min);
-    var t = either(roots.greater, roots.lesser, is_lesser);
-    var is_accepted = roots.exist & (is_lesser | (range.greater & is_beyond(roots.greater, range.t_min)));
-    var inside = !is_lesser;
-    // The outside of a convex surface is never met again.
-    let is_own = own.shape == body.shape.index;
-    let exit = distance_of(exit_root(own, direction_of(ray), body));
-    t = either(t, exit, is_own);
-    is_accepted = select(is_accepted, own.inside & is_beyond(exit, range.t_min), is_own);
-    inside |= is_own;
-    return Root(is_accepted & is_nearer(t, range.t_max), t, inside);
+    let t = either(roots.greater, roots.lesser, is_lesser);
+    let counts = roots.exist & (is_lesser | (range.greater & is_beyond(roots.greater, range.t_min)));
+    return Root(counts & is_nearer(t, range.t_max), t, !is_lesser);
+}
+
+// Of any sphere.
+fn accepted_root(ray: Ray, body: Body, exit: Exit, range: Range) -> Root {
+    let other = other_root(ray, body, range);
+    let t = distance_of(exit.t);
+    let counts = exit.exists & is_beyond(t, range.t_min) & is_nearer(t, range.t_max);
+    let is_own = exit.shape == body.shape.index;
+    return Root(select(other.counts, counts, is_own), either(other.t, t, is_own), other.inside | is_own);
 }
 
 fn no_hit() -> Hit {
@@ -87,8 +99,7 @@ fn nearer_hit(first: Hit, second: Hit, is_second: bool) -> Hit {
 }
 
 // Whether a root that counts lies beyond t_min and before t = 1.
-fn blocks(ray: Ray, body: Body, own: Own, t_min: real) -> bool {
-    let t = exit_root(own, direction_of(ray), body);
-    let is_own = own.shape == body.shape.index;
-    return select(root_between(ray, body, t_min), own.inside & (t > t_min) & (t < real(1.0)), is_own);
+fn blocks(ray: Ray, body: Body, exit: Exit, t_min: real) -> bool {
+    let counts = exit.exists & (exit.t > t_min) & (exit.t < real(1.0));
+    return select(root_between(ray, body, t_min), counts, exit.shape == body.shape.index);
 }

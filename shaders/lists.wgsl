@@ -27,8 +27,11 @@ fn face_of(index: u32) -> Face {
 const REACH: real = real(1.01);
 
 // The nearer of a hit and the intersection with one more sphere; of equal ones the lower index.
-fn nearer_of(nearest: Hit, ray: Ray, body: Body, sphere: u32, own: Own, range: Range) -> Hit {
-    let root = accepted_root(ray, body, own, range);
+fn nearer_of(nearest: Hit, ray: Ray, body: Body, sphere: u32, exit: Exit, range: Range) -> Hit {
+    return nearer_root(nearest, accepted_root(ray, body, exit, range), sphere);
+}
+
+fn nearer_root(nearest: Hit, root: Root, sphere: u32) -> Hit {
     let is_tie = !is_nearer(nearest.t, root.t) & (sphere < nearest.sphere);
     return nearer_hit(nearest, Hit(true, root.t, sphere, root.inside), root.counts & (is_nearer(root.t, nearest.t) | is_tie));
 }
@@ -38,7 +41,6 @@ fn nearer_of(nearest: Hit, ray: Ray, body: Body, sphere: u32, own: Own, range: R
 
 // The nearest intersection of a primary ray through the tile of this pixel.
 fn nearest_seen(ray: Ray, pixel: vec2<u32>) -> Hit {
-    let own = Own(NO_SHAPE, false, vec3r());
     let range = primary_range();
     let tile = pixel >> vec2(params.screen_shift);
     let list = cell_at(tile.y * params.screen_across + tile.x);
@@ -48,7 +50,7 @@ fn nearest_seen(ray: Ray, pixel: vec2<u32>) -> Hit {
         loop {
             let sphere = entry_at(at);
             let body = body_of(sphere);
-            nearest = nearer_of(nearest, ray, body, sphere, own, range);
+            nearest = nearer_root(nearest, other_root(ray, body, range), sphere);
             if TANGENTS {
                 is_tangent |= may_touch(ray, body);
             }
@@ -64,7 +66,7 @@ fn nearest_seen(ray: Ray, pixel: vec2<u32>) -> Hit {
 }
 
 // The nearer of a hit and the intersections with the spheres that are too large for the cells of the grid.
-fn nearest_large(before: Hit, ray: Ray, own: Own, range: Range) -> Hit {
+fn nearest_large(before: Hit, ray: Ray, exit: Exit, range: Range) -> Hit {
     // The last cell has them.
     let cells = params.grid_cells;
     let list = cell_at(params.grid_first + cells.x * cells.y * cells.z);
@@ -75,9 +77,9 @@ fn nearest_large(before: Hit, ray: Ray, own: Own, range: Range) -> Hit {
         // changes nothing.
         loop {
             let first = entry_at(at);
-            nearest = nearer_of(nearest, ray, body_of(first), first, own, range);
+            nearest = nearer_of(nearest, ray, body_of(first), first, exit, range);
             let second = entry_at(min(at + 1u, list.y - 1u));
-            nearest = nearer_of(nearest, ray, body_of(second), second, own, range);
+            nearest = nearer_of(nearest, ray, body_of(second), second, exit, range);
             at += 2u;
             if at >= list.y {
                 break;
@@ -121,6 +123,7 @@ fn is_behind(body: Body, light: vec3r, distance: real) -> bool {
 
 // Whether any sphere stands between the ray's origin and the light with this index, at t = 1.
 fn any_hit(ray: Ray, own: Own, light: Light, index: u32, is_asked: bool) -> bool {
+    let exit = exit_of(own, ray);
     let from_light = -direction_of(ray);
     let list = light_list(index, from_light, is_asked);
     let distance = sqrt(dot(from_light, from_light)) + params.light_slack;
@@ -135,7 +138,7 @@ fn any_hit(ray: Ray, own: Own, light: Light, index: u32, is_asked: bool) -> bool
             // By what the turns before have found: this one need not wait for its own test, which can but find more of the same.
             let is_over = is_last | blocked | (at == list.y);
             is_last |= is_behind(body, light.position, distance);
-            blocked |= blocks(ray, body, own, t_min);
+            blocked |= blocks(ray, body, exit, t_min);
             if is_over {
                 break;
             }

@@ -1,10 +1,11 @@
 // The nearest intersection of a ray that leaves a surface, where some spheres are in the grid and some too large for it.
 
 // Among those outside the grid.
-fn nearest_outside(ray: Ray, own: Own, range: Range) -> Hit {
-    return nearest_large(no_hit(), ray, own, range);
+fn nearest_outside(ray: Ray, exit: Exit, range: Range) -> Hit {
+    return nearest_large(no_hit(), ray, exit, range);
 }
 
 fn nearest_secondary(ray: Ray, own: Own, range: Range) -> Hit {
-    return nearest_in_grid(nearest_outside(ray, own, range), ray, own, range);
+    let exit = exit_of(own, ray);
+    return nearest_in_grid(nearest_outside(ray, exit, range), ray, exit, range);
 }

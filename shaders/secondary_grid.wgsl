@@ -1,10 +1,11 @@
 // The nearest intersection of a ray that leaves a surface, where all spheres are in the grid.
 
 // Among those outside the grid.
-fn nearest_outside(ray: Ray, own: Own, range: Range) -> Hit {
+fn nearest_outside(ray: Ray, exit: Exit, range: Range) -> Hit {
     return no_hit();
 }
 
 fn nearest_secondary(ray: Ray, own: Own, range: Range) -> Hit {
-    return nearest_in_grid(nearest_outside(ray, own, range), ray, own, range);
+    let exit = exit_of(own, ray);
+    return nearest_in_grid(nearest_outside(ray, exit, range), ray, exit, range);
 }

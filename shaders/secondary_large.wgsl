@@ -4,13 +4,14 @@
 override SPHERE_COUNT: u32;
 
 fn nearest_secondary(ray: Ray, own: Own, range: Range) -> Hit {
+    let exit = exit_of(own, ray);
     var nearest = no_hit();
     var sphere = 0u;
     // Two in each turn: see nearest_large.
     loop {
-        nearest = nearer_of(nearest, ray, body_of(sphere), sphere, own, range);
+        nearest = nearer_of(nearest, ray, body_of(sphere), sphere, exit, range);
         let second = min(sphere + 1u, SPHERE_COUNT - 1u);
-        nearest = nearer_of(nearest, ray, body_of(second), second, own, range);
+        nearest = nearer_of(nearest, ray, body_of(second), second, exit, range);
         sphere += 2u;
         if sphere >= SPHERE_COUNT {
             break;

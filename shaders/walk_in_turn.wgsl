@@ -32,7 +32,7 @@ fn walk_paths(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation
     var current = end;
     var next = first + index;
     var ray: Ray;
-    var own: Own;
+    var exit: Exit;
     var nearest = no_hit();
     var walk: Walk;
     walk.goes_on = false;
@@ -47,8 +47,8 @@ fn walk_paths(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation
             }
             let path = path_of(min(next, end - 1u));
             ray = path.ray;
-            own = path.own;
-            nearest = nearest_outside(ray, own, range);
+            exit = exit_of(path.own, ray);
+            nearest = nearest_outside(ray, exit, range);
             walk = begin_walk(ray);
             walk.goes_on = next < end;
             current = next;
@@ -57,7 +57,7 @@ fn walk_paths(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation
         var turn = 0u;
         loop {
             if walk.goes_on {
-                take_turn(&walk, &nearest, ray, own, range);
+                take_turn(&walk, &nearest, ray, exit, range);
             }
             turn++;
             if !walk.goes_on | (turn == TURNS) {
