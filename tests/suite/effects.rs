@@ -49,12 +49,7 @@ fn table() -> Vec<(String, Effect, bool, &'static str)> {
         ),
         (sphere("s", [0.0, 0.0, -1.0], 0.5, "0 1 0 0 1") + LIGHT, Effect::Shadows, true, "seen from inside"),
         (sphere("s", [0.0, 0.0, -9000.0], 9.0, "0 1 0 0 1") + LIGHT, Effect::Shadows, false, "convex"),
-        (
-            sphere("s", [0.0, 0.0, -9e5], 9.0, "0 1 0 0 1") + "LIGHT l 0 20 -9e5 1 1 1",
-            Effect::Shadows,
-            false,
-            "convex",
-        ),
+        (sphere("s", [0.0, 0.0, -9e5], 9.0, "0 1 0 0 1") + "LIGHT l 0 20 -9e5 1 1 1", Effect::Shadows, false, "convex"),
         (lone("1 0 0 1 1"), Effect::Reflections, false, "alone, convex and seen from outside"),
         (lone("1 0 0 0 1"), Effect::Reflections, false, "no sphere has Kr > 0"),
         (lone("1 0 0 1 1") + &sphere("b", [5.0, 0.0, -5.0], 1.0, "1 0 0 0 1"), Effect::Reflections, true, "one bounce"),
