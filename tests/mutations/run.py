@@ -2,12 +2,12 @@
 """Plants the faults of mutations.txt in a copy of the tree, one at a time: the tests have to catch each of them.
 
     python3 tests/mutations/run.py --check         only says which faults no longer apply; nothing is compiled
-    python3 tests/mutations/run.py                 all faults; writes tests/mutations/table.md
-    python3 tests/mutations/run.py --only TEXT     those with TEXT in their names; the table stays as it is
+    python3 tests/mutations/run.py                 all faults
+    python3 tests/mutations/run.py --only TEXT     those with TEXT in their names; may be repeated
 
 Runs what the README says, `sh tests/run.sh`, without TRUERAY_KEYS: first the expected pictures and claims of
 the scenes, then what is calculated by hand, and the whole suite for faults that pass these. It takes a minute or two for each fault, so it runs on demand.
-The copy and its build are in target/mutations/. The exit code is 0 if every fault applies, compiles and is caught.
+What is found goes into tests/mutations/table.md, row by row. The copy and its build are in target/mutations/. The exit code is 0 if every fault applies, compiles and is caught.
 """
 
 import argparse
@@ -27,6 +27,8 @@ TREE = WORK / "tree"
 # What catches most faults, the quickest first: the modules of the suite that are compiled, or all tests of all binaries. The rest of the suite
 # would take longer to compile than these to run.
 STAGES = [["golden", "claims", "support"], ["phong", "support"], None]
+
+ESCAPED = "**nothing**"
 
 # How long one stage may take: a fault may make a loop endless.
 LIMIT_S = 1800
@@ -141,10 +143,10 @@ def in_short(tests):
 def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("--check", action="store_true")
-    arguments.add_argument("--only", default="", metavar="TEXT")
+    arguments.add_argument("--only", action="append", metavar="TEXT")
     arguments = arguments.parse_args()
     every = parse((HERE / "mutations.txt").read_text())
-    faults = {name: changes for name, changes in every.items() if arguments.only in name}
+    faults = {name: changes for name, changes in every.items() if any(text in name for text in arguments.only or [""])}
     unfit = list(problems(faults, ROOT))
     print("\n".join(unfit + [f"{len(faults)} faults, {len(unfit)} places that do not fit"]), flush=True)
     if arguments.check or unfit or not faults:
@@ -158,7 +160,7 @@ def main():
             print(f"without any fault: {trouble or in_short(failed)}")
             return True
 
-    rows, escaped = [], []
+    escaped = []
     for name, changes in faults.items():
         start = time.monotonic()
         plant(changes)
@@ -169,22 +171,31 @@ def main():
                     break
         finally:
             restore(changes)
-        result = trouble or (in_short(failed) if failed else "**nothing**")
+        result = trouble or (in_short(failed) if failed else ESCAPED)
         if trouble or not failed:
             escaped.append(name)
-        files = ", ".join(file for file, *_ in changes)
-        rows.append(f"| {name} | {files} | {result.splitlines()[0]} | {time.monotonic() - start:.0f} |")
-        print(f"{rows[-1]}\n{result}" if trouble else rows[-1], flush=True)
-    caught = f"{len(faults) - len(escaped)} of {len(faults)} faults caught"
-    if not arguments.only:
-        head = (
-            f"# Planted faults\n\n{caught} by `sh tests/run.sh` without TRUERAY_KEYS; written by `python3 tests/mutations/run.py`. "
-            "Tests are those of the first stage that catches it: expected pictures and claims, colours by hand, all.\n\n"
-            "| fault | files | caught by | s |\n|---|---|---|---|\n"
-        )
-        (HERE / "table.md").write_text(head + "\n".join(rows) + "\n")
-    print(caught + "".join(f"\nnot caught: {name}" for name in escaped))
+        files = ", ".join(f"`{file}`" for file, *_ in changes)
+        row = f"| {name} | {files} | {result.splitlines()[0]} | {time.monotonic() - start:.0f} |"
+        print(f"{row}\n{result}" if trouble else row, flush=True)
+        write_row(every, name, row)
+    print(f"{len(faults) - len(escaped)} of {len(faults)} faults caught" + "".join(f"\nnot caught: {name}" for name in escaped))
     return bool(escaped)
+
+
+def write_row(every, name, row):
+    """Puts a fault's row in its place in the table; rows of faults that are no more fall out."""
+    table = HERE / "table.md"
+    known = table.read_text().splitlines() if table.exists() else []
+    rows = {line.split(" | ")[0].removeprefix("| "): line for line in known if line.startswith("| ")}
+    rows[name] = row
+    rows = [rows[name] for name in every if name in rows]
+    caught = sum(row.split(" | ")[2][0].isdigit() for row in rows)
+    head = (
+        f"# Planted faults\n\n{caught} of {len(every)} caught by `sh tests/run.sh` without TRUERAY_KEYS; written by "
+        "`python3 tests/mutations/run.py`.\nTests are those of the first stage that catches the fault: expected pictures and "
+        "claims, colours by hand, all.\n\n| fault | files | caught by | s |\n|---|---|---|---|\n"
+    )
+    table.write_text(head + "\n".join(rows) + "\n")
 
 
 if __name__ == "__main__":
