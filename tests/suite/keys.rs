@@ -85,3 +85,22 @@ fn gpu_at_double_matches_every_key_bit_for_bit() {
         assert_eq!(difference.differing.over_1, 0, "{subject}");
     }
 }
+
+/// White where nothing is rounded has no margin.
+#[test]
+fn keys_with_254_for_255_are_unexplained() {
+    let Some(keys) = keys("keys_with_254_for_255_are_unexplained") else { return };
+    let settings = Settings::classic();
+    for (subject, scene, _) in keys {
+        let effects = Effects::of(&scene, &settings);
+        let (expected, _) = cpu_picture::<f64>(&scene, &settings, &effects);
+        let rgb = expected.rgb().iter().map(|&level| level.min(254)).collect();
+        let wrong = Picture::new(scene.width, scene.height, rgb).unwrap();
+        let reference = Reference::new(&scene, &settings, &effects);
+        for tier in Tier::ALL {
+            let explanation = Explanation::of(&wrong, &expected, &reference, &Judge::of(tier));
+            let explained = explanation.differing - explanation.unexplained;
+            assert!(explained * 100 <= explanation.differing, "{subject}, {tier}:\n{}", explanation.report());
+        }
+    }
+}

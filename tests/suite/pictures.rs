@@ -230,30 +230,6 @@ fn kernels_are_parsed_ahead_for_the_picture_that_follows() {
     }
 }
 
-/// A picture that is wrong everywhere must stay unexplained nearly everywhere, or the margins would prove nothing.
-#[test]
-fn the_margins_explain_little() {
-    for file in scene_files(&ORDINARY) {
-        let scene = scene(&file);
-        // Each wrong pixel is judged against every sphere.
-        if scene.spheres.len() > 100 {
-            continue;
-        }
-        // Deeper chains of curved mirrors are so ill-conditioned that f32 explains most of what they show.
-        for (name, settings) in &conventions()[..2] {
-            let effects = Effects::of(&scene, settings);
-            let (expected, _) = cpu_picture::<f64>(&scene, settings, &effects);
-            let wrong: Vec<u8> = expected.rgb().iter().map(|level| level ^ 0x80).collect();
-            let wrong = Picture::new(scene.width, scene.height, wrong).unwrap();
-            let reference = Reference::new(&scene, settings, &effects);
-            let explanation = Explanation::of(&wrong, &expected, &reference, &Judge::of(Tier::Fast));
-            let explained = 1.0 - explanation.unexplained as f64 / expected.pixel_count() as f64;
-            let report = explanation.report();
-            assert!(explained < 0.05, "{}, {name}: {:.2} %\n{report}", short(&file), 100.0 * explained);
-        }
-    }
-}
-
 #[test]
 fn a_lost_device_is_an_error_and_no_panic() {
     // A device of its own: the shared one must live on.
