@@ -25,11 +25,11 @@ use crate::scene::{Scene, Sphere};
 const LEVELS: f64 = 3.0 * 255.0;
 /// Up to so many spheres are all looked at, and of more the largest and so many others.
 const LARGEST: usize = 16;
-const ALONE: usize = 4096;
+const ALONE: usize = 1024;
 /// Among so many shadows and images are counted.
 const AMONG: usize = 128;
 /// Spheres that one thread looks at in turn.
-const CHUNK: usize = 512;
+const CHUNK: usize = 256;
 
 /// What each kind of error amounts to, of its bound.
 struct Parts {
@@ -56,7 +56,7 @@ const PARTS: Parts = Parts {
     flat: 1.5,
     light: 0.7,
     color: 1.0,
-    mirrored: [1.0, 7.0],
+    mirrored: [1.0, 9.0],
     turn: 0.45,
     images: 0.5,
 };
