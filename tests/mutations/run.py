@@ -4,6 +4,7 @@
     python3 tests/mutations/run.py --check         only says which faults no longer apply; nothing is compiled
     python3 tests/mutations/run.py                 all faults
     python3 tests/mutations/run.py --only TEXT     those with TEXT in their names; may be repeated
+    python3 tests/mutations/run.py --new           those without a row in the table
 
 Runs what the README says, `sh tests/run.sh`, without TRUERAY_KEYS: first the expected pictures and claims of
 the scenes, then what is calculated by hand, and the whole suite for faults that pass these. It takes a minute or two for each fault, so it runs on demand.
@@ -23,6 +24,7 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 WORK = ROOT / "target" / "mutations"
 TREE = WORK / "tree"
+TABLE = HERE / "table.md"
 
 # What catches most faults, the quickest first: the modules of the suite that are compiled, or all tests of all binaries. The rest of the suite
 # would take longer to compile than these to run.
@@ -144,9 +146,12 @@ def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("--check", action="store_true")
     arguments.add_argument("--only", action="append", metavar="TEXT")
+    arguments.add_argument("--new", action="store_true")
     arguments = arguments.parse_args()
     every = parse((HERE / "mutations.txt").read_text())
     faults = {name: changes for name, changes in every.items() if any(text in name for text in arguments.only or [""])}
+    if arguments.new:
+        faults = {name: changes for name, changes in faults.items() if name not in rows()}
     unfit = list(problems(faults, ROOT))
     print("\n".join(unfit + [f"{len(faults)} faults, {len(unfit)} places that do not fit"]), flush=True)
     if arguments.check or unfit or not faults:
@@ -182,20 +187,23 @@ def main():
     return bool(escaped)
 
 
+def rows():
+    """Name of the fault -> row of the table."""
+    lines = TABLE.read_text().splitlines() if TABLE.exists() else []
+    return {line.split(" | ")[0].removeprefix("| "): line for line in lines if line.startswith("| ")}
+
+
 def write_row(every, name, row):
     """Puts a fault's row in its place in the table; rows of faults that are no more fall out."""
-    table = HERE / "table.md"
-    known = table.read_text().splitlines() if table.exists() else []
-    rows = {line.split(" | ")[0].removeprefix("| "): line for line in known if line.startswith("| ")}
-    rows[name] = row
-    rows = [rows[name] for name in every if name in rows]
-    caught = sum(row.split(" | ")[2][0].isdigit() for row in rows)
+    known = rows() | {name: row}
+    listed = [known[name] for name in every if name in known]
+    caught = sum(row.split(" | ")[2][0].isdigit() for row in listed)
     head = (
         f"# Planted faults\n\n{caught} of {len(every)} caught by `sh tests/run.sh` without TRUERAY_KEYS; written by "
         "`python3 tests/mutations/run.py`.\nTests are those of the first stage that catches the fault: expected pictures and "
         "claims, colours by hand, all.\n\n| fault | files | caught by | s |\n|---|---|---|---|\n"
     )
-    table.write_text(head + "\n".join(rows) + "\n")
+    TABLE.write_text(head + "\n".join(listed) + "\n")
 
 
 if __name__ == "__main__":

@@ -412,6 +412,33 @@ fn a_sample_lies_where_the_settings_say() {
     check("a_sample_lies_where_the_settings_say", &cases, Ways::Tuned);
 }
 
+/// A ball on each sample's ray, each of its own colour, some brighter than white; and a sample that sees the background.
+#[test]
+fn a_pixel_is_the_mean_of_its_samples() {
+    let width = 2.0 / f64::from(SIZE);
+    let mut cases = Vec::new();
+    for (name, settings) in conventions() {
+        for side in [2, 3] {
+            let (sx, sy) = settings.sampling.offset();
+            let mut statements = Vec::new();
+            let mut sum = BACK;
+            for sample in 1..side * side {
+                // From the pixel's corner, which lies so far from the ray of the case.
+                let (i, j) = (f64::from(sample % side), f64::from(sample / side));
+                let x = AXIS.x - sx * width + (i + sx) / f64::from(side) * width;
+                let y = AXIS.y + sy * width - (j + sy) / f64::from(side) * width;
+                let color = v(0.3 * f64::from(sample), 1.7 / f64::from(sample), 0.1 * f64::from(sample));
+                let material = Material { color, ..FLAT };
+                statements.push(ball(4.0 * v(x, y, -1.0), 0.01, &material));
+                sum += ambient(&material);
+            }
+            let case = case(format!("{side} x {side}"), AXIS, statements, sum / f64::from(side * side));
+            cases.push(case.only(&name).with(|settings| settings.samples = side));
+        }
+    }
+    check("a_pixel_is_the_mean_of_its_samples", &cases, Ways::Tuned);
+}
+
 #[test]
 fn the_distance_of_the_image_plane_belongs_to_the_ray() {
     // Twice as far, and a window point twice as far out: the same ray.
