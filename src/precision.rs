@@ -101,7 +101,7 @@ impl Tier {
             Self::Fast => Promise {
                 share: MAX_SHARE,
                 nearness: 1e-6,
-                axis_ratio: 1e5,
+                axis_ratio: 1e4,
                 exponent: 1e6,
                 reach: 1e15,
                 brightness: Scalar::Single.max_brightness(),
@@ -215,10 +215,14 @@ impl Demand {
         if effects.set.has(Effect::Specular) && sphere.ks != 0.0 {
             self.exponent.raise(sphere.n, index);
         }
-        let coordinates = sphere.center.length() + long;
         let mut add_nearness = |origin: DVec3| {
-            let height = ((origin - sphere.center) / scale).length() - 1.0;
-            self.nearness.lower(height.abs() * short / (coordinates + origin.length()), index);
+            let from_center = origin - sphere.center;
+            // What is farther away is not near.
+            if from_center.length_squared() <= 4.0 * long * long {
+                let height = (from_center / scale).length() - 1.0;
+                let coordinates = sphere.center.length() + origin.length() + long;
+                self.nearness.lower(height.abs() * short / coordinates, index);
+            }
         };
         add_nearness(DVec3::ZERO);
         if effects.set.has(Effect::Shadows) {

@@ -6,8 +6,8 @@
 //! colours vary from 0 to 1 along a line, 255 levels in each of three channels are passed. So each sphere counts by the length
 //! of its outline and what it shows, spheres out of the window or smaller than a pixel for next to nothing; shadows and mirror
 //! images count by the length of theirs. Places on a surface are off by as much as the sphere's own size and distance cost,
-//! which turns normals, and light from nearby. All this takes time that grows with the number of spheres alone: shadows and
-//! images are counted among a part of them.
+//! which turns normals, and light from nearby. Of many spheres all but the largest are looked at in samples, and shadows and
+//! images are counted among fewer of them still: choosing a tier must take next to no time beside preparing it.
 //!
 //! The constants, `PARTS`, are what pictures of more than a hundred families of scenes differ by, rounded up.
 
@@ -23,11 +23,13 @@ use crate::scene::{Scene, Sphere};
 
 /// Levels of all channels that a colour passes between black and white.
 const LEVELS: f64 = 3.0 * 255.0;
-/// How many spheres shadows and images are counted among: the largest ones, and a part of the others.
+/// Up to so many spheres are all looked at, and of more the largest and so many others.
 const LARGEST: usize = 16;
-const SAMPLES: usize = 128;
+const ALONE: usize = 1024;
+/// Among so many shadows and images are counted.
+const AMONG: usize = 128;
 /// Spheres that one thread looks at in turn.
-const CHUNK: usize = 4096;
+const CHUNK: usize = 256;
 
 /// What each kind of error amounts to, of its bound.
 struct Parts {
@@ -54,7 +56,7 @@ const PARTS: Parts = Parts {
     flat: 1.5,
     light: 0.7,
     color: 1.0,
-    mirrored: [1.0, 7.0],
+    mirrored: [1.0, 9.0],
     turn: 0.45,
     images: 0.5,
 };
@@ -149,16 +151,29 @@ struct Sums {
 
 /// The greatest of some values.
 #[derive(Clone, Default)]
-struct Largest(Vec<(f64, usize)>);
+struct Largest {
+    found: Vec<(f64, usize)>,
+    /// The least of them, once there are enough.
+    least: f64,
+}
 
 impl Largest {
     fn add(&mut self, value: f64, index: usize) {
-        if self.0.len() < LARGEST / 2 {
-            self.0.push((value, index));
-        } else if let Some(least) = self.0.iter_mut().min_by(|a, b| a.0.total_cmp(&b.0)).filter(|least| least.0 < value)
-        {
-            *least = (value, index);
+        if self.found.len() < LARGEST / 2 {
+            self.found.push((value, index));
+        } else if value <= self.least {
+            return;
+        } else if let Some(place) = self.found.iter_mut().min_by(|a, b| a.0.total_cmp(&b.0)) {
+            *place = (value, index);
         }
+        if self.found.len() == LARGEST / 2 {
+            self.least = self.found.iter().fold(f64::INFINITY, |least, &(value, _)| least.min(value));
+        }
+    }
+
+    fn plus(mut self, other: Self) -> Self {
+        other.found.into_iter().for_each(|(value, index)| self.add(value, index));
+        self
     }
 }
 
@@ -178,9 +193,9 @@ impl Sums {
         }
     }
 
-    fn change(&mut self, sphere: usize, by: ByTier) {
+    fn change(&mut self, sphere: usize, weight: f64, by: ByTier) {
         for (tier, by) in by.into_iter().enumerate() {
-            self.changed[tier] += by;
+            self.changed[tier] += weight * by;
             self.greatest[tier].raise(by, sphere);
         }
     }
@@ -198,8 +213,8 @@ impl Sums {
                 self.greatest[tier].raise(value, sphere);
             }
         }
-        other.large.0.into_iter().for_each(|(value, index)| self.large.add(value, index));
-        other.wide.0.into_iter().for_each(|(value, index)| self.wide.add(value, index));
+        self.large = self.large.plus(other.large);
+        self.wide = self.wide.plus(other.wide);
         self
     }
 }
@@ -247,19 +262,37 @@ impl<'a> Shares<'a> {
 
     /// The shares. `nested` are spheres with another surface so many world units below their own.
     pub(super) fn estimate(&self, nested: &[(usize, f64)]) -> [Extreme; 3] {
-        let count = self.scene.spheres.len();
-        let chunk = |chunk: usize| {
+        let chosen = chosen(self.scene.spheres.len(), ALONE, || self.largest());
+        let chunk = |chosen: &[(usize, f64)]| {
             let mut sums = Sums::none();
-            (chunk * CHUNK..count.min((chunk + 1) * CHUNK)).for_each(|index| self.add_alone(index, &mut sums));
+            for &(index, weight) in chosen {
+                self.add_alone(index, weight, &mut sums);
+            }
             sums
         };
-        let mut sums = (0..count.div_ceil(CHUNK)).into_par_iter().map(chunk).reduce(Sums::none, Sums::plus);
+        let mut sums = chosen.par_chunks(CHUNK).map(chunk).reduce(Sums::none, Sums::plus);
         self.add_others(&mut sums);
         self.add_nested(nested, &mut sums);
         // Where outlines lie over each other only so much of them is seen.
         let covered = sums.area / self.frame.area();
         let visible = visible_part(covered) / self.frame.area();
         Tier::ALL.map(|tier| Extreme { value: sums.changed[tier as usize] * visible, ..sums.greatest[tier as usize] })
+    }
+
+    /// The spheres that are largest, and those that are so beside their distance.
+    fn largest(&self) -> Vec<usize> {
+        let chunk = |(chunk, spheres): (usize, &[Sphere])| {
+            let (mut large, mut wide) = (Largest::default(), Largest::default());
+            for (place, sphere) in spheres.iter().enumerate() {
+                let (size, index) = (sphere.scale.abs().max_element(), chunk * CHUNK + place);
+                large.add(size, index);
+                wide.add(size * size / sphere.center.length_squared(), index);
+            }
+            (large, wide)
+        };
+        let found = self.scene.spheres.par_chunks(CHUNK).enumerate().map(chunk);
+        let (large, wide) = found.reduce(Default::default, |a, b| (a.0.plus(b.0), a.1.plus(b.1)));
+        indices(&large, &wide)
     }
 
     fn seen(&self, sphere: &Sphere) -> Option<Seen> {
@@ -292,12 +325,12 @@ impl<'a> Shares<'a> {
     }
 
     /// What a sphere changes by its own outline and shading.
-    fn add_alone(&self, index: usize, sums: &mut Sums) {
+    fn add_alone(&self, index: usize, weight: f64, sums: &mut Sums) {
         let sphere = &self.scene.spheres[index];
         let (long, _) = axes_of(sphere);
         let all_light: f64 = self.lights.iter().map(|light| light.1).sum();
-        sums.size += long;
-        sums.shaded += long * self.shading(sphere, all_light);
+        sums.size += weight * long;
+        sums.shaded += weight * long * self.shading(sphere, all_light);
         sums.large.add(long, index);
         let Some(seen) = self.seen(sphere) else { return };
         let Seen { outline, short, reach, is_inside, .. } = seen;
@@ -329,12 +362,12 @@ impl<'a> Shares<'a> {
             let off = axes_away * p.places;
             places * p.places + rim * off * off / 2.0 * PARTS.edge + colors * p.shading
         };
-        sums.change(index, self.precisions.map(by_tier));
-        sums.area += outline.area;
-        sums.bright += outline.area * bright;
-        let mirror = self.mirror(sphere);
-        sums.mirror += outline.area * mirror;
-        sums.mirrored += LEVELS * outline.area * mirror * PARTS.mirrored[usize::from(is_inside)];
+        sums.change(index, weight, self.precisions.map(by_tier));
+        let (area, mirror) = (weight * outline.area, self.mirror(sphere));
+        sums.area += area;
+        sums.bright += area * bright;
+        sums.mirror += area * mirror;
+        sums.mirrored += LEVELS * area * mirror * PARTS.mirrored[usize::from(is_inside)];
     }
 
     /// What shadows and images of spheres on each other change.
@@ -362,10 +395,7 @@ impl<'a> Shares<'a> {
             let shadows = on.shadows * seen.shift() * PARTS.edge;
             let places = shadows + on.shifted * (edges * PARTS.edge + shades * PARTS.shade);
             let turned = 3.0 * on.turned * (edges + shades) * PARTS.turn;
-            sums.change(
-                sample.index,
-                self.precisions.map(|p| sample.weight * (places * p.places + turned * p.shading)),
-            );
+            sums.change(sample.index, sample.weight, self.precisions.map(|p| places * p.places + turned * p.shading));
         }
         let bounces = chain(if sums.area > 0.0 { sums.mirror / sums.area } else { 0.0 });
         let bright = if sums.area > 0.0 { sums.bright / sums.area * bounces } else { 0.0 };
@@ -381,20 +411,8 @@ impl<'a> Shares<'a> {
             let sphere = &spheres[index];
             Sample { index, weight, sphere, size: axes_of(sphere).0, seen: self.seen(sphere) }
         };
-        if spheres.len() <= LARGEST + SAMPLES {
-            return (0..spheres.len()).map(|index| sample(index, 1.0)).collect();
-        }
-        let mut largest: Vec<usize> = sums.large.0.iter().chain(&sums.wide.0).map(|&(_, index)| index).collect();
-        largest.sort_unstable();
-        largest.dedup();
-        let others = (0..SAMPLES).map(|k| (2 * k + 1) * spheres.len() / (2 * SAMPLES));
-        let others: Vec<usize> = others.filter(|index| largest.binary_search(index).is_err()).collect();
-        let weight = (spheres.len() - largest.len()) as f64 / others.len() as f64;
-        largest
-            .iter()
-            .map(|&index| sample(index, 1.0))
-            .chain(others.iter().map(|&index| sample(index, weight)))
-            .collect()
+        let chosen = chosen(spheres.len(), AMONG, || indices(&sums.large, &sums.wide));
+        chosen.into_iter().map(|(index, weight)| sample(index, weight)).collect()
     }
 
     /// What is to be seen on one sphere of all others.
@@ -445,9 +463,29 @@ impl<'a> Shares<'a> {
             let Some(seen) = self.seen(&self.scene.spheres[index]) else { continue };
             let is_lost =
                 |p: Precision| gap < 4.0 * (p.places * seen.reach).max(0.25 * p.order * seen.outline.distance);
-            sums.change(index, self.precisions.map(|p| if is_lost(p) { seen.outline.area } else { 0.0 }));
+            sums.change(index, 1.0, self.precisions.map(|p| if is_lost(p) { seen.outline.area } else { 0.0 }));
         }
     }
+}
+
+/// All of `count` spheres, or the largest and `most` of the others, evenly; each with the number of spheres that it stands for.
+fn chosen(count: usize, most: usize, largest: impl Fn() -> Vec<usize>) -> Vec<(usize, f64)> {
+    if count <= LARGEST + most {
+        return (0..count).map(|index| (index, 1.0)).collect();
+    }
+    let largest = largest();
+    let others = (0..most).map(|k| (2 * k + 1) * count / (2 * most));
+    let others: Vec<usize> = others.filter(|index| largest.binary_search(index).is_err()).collect();
+    let weight = (count - largest.len()) as f64 / others.len() as f64;
+    largest.iter().map(|&index| (index, 1.0)).chain(others.iter().map(|&index| (index, weight))).collect()
+}
+
+/// The spheres of both, in order.
+fn indices(large: &Largest, wide: &Largest) -> Vec<usize> {
+    let mut indices: Vec<usize> = large.found.iter().chain(&wide.found).map(|&(_, index)| index).collect();
+    indices.sort_unstable();
+    indices.dedup();
+    indices
 }
 
 fn mean(color: DVec3) -> f64 {

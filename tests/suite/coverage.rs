@@ -99,7 +99,7 @@ fn auto_says_what_takes_it_to_another_tier() {
         "six mirrors of 0.9",
         "ellipsoids up to 1:10",
         "sun 1e12 away",
-        "needles 1:1e-4",
+        "needles 1:1e-3",
     ] {
         assert_eq!(named(name).tier, Tier::Fast, "{name}: {}", named(name).reason);
     }
