@@ -1,8 +1,11 @@
 //! Numbers of any size that a scene file may have: the same picture as at usual sizes, or a refusal.
 
+use std::cmp::Ordering;
+
 use glam::DVec3;
 use trueray::cpu::{Reference, seen_through};
 use trueray::effects::Effects;
+use trueray::exact::ExactScene;
 use trueray::gpu::{Choice, Gpu, GpuRenderer, Kernel};
 use trueray::limits;
 use trueray::precision::{self, Selection, Tier};
@@ -13,7 +16,7 @@ use trueray::view::View;
 
 use trueray::accel::Rounding;
 
-use crate::support::{cpu_picture, gpu, scaled, scene, scene_files, scene_of};
+use crate::support::{cpu_picture, gpu, gpu_picture, scaled, scene, scene_files, scene_of};
 
 /// All tiers that the device has.
 fn kernels(gpu: &Gpu) -> Vec<Kernel> {
@@ -207,7 +210,10 @@ fn lists_hold_at_every_magnitude_and_tier() {
             rendered += 1;
             assert_eq!(differing(&lists, &all), 0, "{kernel:?}, scene {seed}");
             if kernel == Kernel::Tier(Tier::Double) {
-                assert_eq!(differing(&lists, &cpu(&scene, &settings, Rounding::DOUBLE)), 0, "scene {seed}");
+                // With what exact arithmetic decides.
+                let (double, _) = gpu_picture(&gpu, Tier::Double, &scene, &settings, &Effects::of(&scene, &settings));
+                let expected = cpu(&scene, &settings, Rounding::DOUBLE);
+                assert_eq!(differing(&double.rgb()[..], &expected), 0, "scene {seed}");
             }
         }
         // Single precision refuses more of them.
@@ -272,7 +278,8 @@ fn shadows_of_a_far_light_do_not_depend_on_its_distance() {
     assert!(with_shadows > 3, "{with_shadows}");
 }
 
-/// A file's numbers times a power of two are the same picture, byte for byte, and so are the effects that `auto` leaves out.
+/// A file's numbers times a power of two are the same picture, byte for byte, and so are the effects that `auto` leaves out. But where a
+/// ray touches a sphere: the decimals of the product are others, of which it may miss it.
 #[test]
 fn no_picture_depends_on_its_units() {
     for file in scene_files(&["basic", "effects", "hard", "refraction", "show"]) {
@@ -280,14 +287,19 @@ fn no_picture_depends_on_its_units() {
         (scene.width, scene.height) = (40, 30);
         for base in [Settings::classic(), Settings::exact()] {
             let expected = cpu(&scene, &base, Rounding::DOUBLE);
+            let exact = ExactScene::new(&scene, &base, true);
             for exponent in [-900, -480, -100, -30, 30, 100, 480, 900] {
                 let factor = 2_f64.powi(exponent);
                 let Secondary { shadow, reflection } = base.secondary;
                 let settings = Settings { secondary: Secondary { shadow, reflection: reflection * factor }, ..base };
                 let scene = scaled(&scene, factor);
                 assert_eq!(limits::problem(&scene, &settings, &Effects::of(&scene, &settings)), None);
-                let difference = differing(&cpu(&scene, &settings, Rounding::DOUBLE), &expected);
-                assert_eq!(difference, 0, "{} times 2^{exponent}", file.display());
+                let actual = cpu(&scene, &settings, Rounding::DOUBLE);
+                for (index, _) in actual.chunks(3).zip(expected.chunks(3)).enumerate().filter(|(_, (a, b))| a != b) {
+                    let pixel = [index as u32 % scene.width, index as u32 / scene.width];
+                    let touches = (0..scene.spheres.len()).any(|s| exact.discriminant(pixel, s) == Ordering::Equal);
+                    assert!(touches, "{} times 2^{exponent}, pixel {pixel:?}", file.display());
+                }
             }
         }
     }
