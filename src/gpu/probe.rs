@@ -236,6 +236,7 @@ impl<'a> Prober<'a> {
             kernel => kernel,
         };
         let module = Parsed::new(&Module::probe(kernel)).map_err(Error::Lost)?;
+        let module = if kernel == Kernel::NoBarrier { module.contractible() } else { module };
         Ok(Self { gpu, kernel, module, stages: HashMap::new(), busy: Duration::ZERO })
     }
 

@@ -32,7 +32,8 @@ pub enum Kernel {
     Pairs,
     /// The schoolbook formula in `f32`: for study only.
     Schoolbook,
-    /// The robust kernel whose error-free transforms are left to the compiler: for study only.
+    /// The robust kernel whose error-free transforms are left to the compiler, without barriers and free to be contracted: for study
+    /// only.
     NoBarrier,
 }
 

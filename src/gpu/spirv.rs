@@ -24,6 +24,8 @@ use super::shader::Module;
 pub struct Parsed {
     module: naga::Module,
     info: ModuleInfo,
+    /// Whether drivers may fuse, reorder and leave out operations.
+    contractible: bool,
 }
 
 impl Parsed {
@@ -32,7 +34,12 @@ impl Parsed {
         let module = module.parse()?;
         // What has constants is validated with them.
         let info = validated(&module, ValidationFlags::empty())?;
-        Ok(Self { module, info })
+        Ok(Self { module, info, contractible: false })
+    }
+
+    /// From now on drivers may fuse, reorder and leave out operations: for study only.
+    pub(super) fn contractible(self) -> Self {
+        Self { contractible: true, ..self }
     }
 
     /// The module with this compute entry point alone, these constants, and without what they exclude: drivers take time to
@@ -98,7 +105,9 @@ impl Parsed {
         let mut module = dr::load_words(words).map_err(|error| error.to_string())?;
         inline_calls(&mut module);
         expand_products(&mut module);
-        forbid_contraction(&mut module);
+        if !self.contractible {
+            forbid_contraction(&mut module);
+        }
         Ok(module.assemble())
     }
 }

@@ -21,7 +21,7 @@ pub struct Cost {
 /// Measures `kernels` and the schoolbook formula in turn, `runs` times each after one warm-up, on the rays of class 2.
 pub fn cost(gpu: &Gpu, kernels: &[Kernel], count: usize, seed: u64, runs: usize) -> Result<Vec<Cost>, Error> {
     let batch = rays::secondary(&mut Random::new(seed, 2 << 8), count);
-    let tests = (count * batch.surfaces.len()) as f64;
+    let tests: f64 = batch.rays.iter().map(|ray| f64::from(ray.end - ray.first)).sum();
     let mut probers = Vec::new();
     for kernel in std::iter::once(&Kernel::Schoolbook).chain(kernels.iter().filter(|&&k| k != Kernel::Schoolbook)) {
         match Prober::new(gpu, *kernel) {

@@ -25,20 +25,20 @@ pub struct Metrics {
     pub inversions: u64,
     /// The greatest such distance of a wrong ray.
     pub misclassified: f64,
-    /// Median relative error of t, in units of 2⁻²³.
+    /// Median error of t in units of 2⁻²³: relative to t, or where a path turns to t and the greatest semi-axis that it ends at.
     pub p50: Option<f64>,
     /// 99.9th percentile of it.
     pub p999: Option<f64>,
     /// Greatest.
     pub max: Option<f64>,
-    /// Greatest relative error of t times the cosines between rays and normals on the way, where surfaces are spheres: errors grow
-    /// like one over them. This and the next three are in units of 2⁻²³.
+    /// Greatest error of t times the cosines between rays and normals on the way, where surfaces are spheres, since errors grow like
+    /// one over them, and where a path turns times how steadily the normal follows the place there. This and the next three are in units of 2⁻²³.
     pub worst_t: Option<f64>,
     /// Greatest error of the hit point in greatest semi-axes, weighted likewise.
     pub worst_place: Option<f64>,
-    /// Greatest error of the unit normal, weighted likewise.
+    /// Greatest error of the unit normal, weighted likewise, and with how steadily it follows the place.
     pub worst_normal: Option<f64>,
-    /// Greatest error of the mirrored direction, weighted likewise.
+    /// Greatest error of the mirrored direction, weighted like that of the normal.
     pub worst_mirrored: Option<f64>,
     /// Hits or results that are not finite, and pixels with the status of one.
     pub not_finite: u64,

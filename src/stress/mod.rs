@@ -198,7 +198,7 @@ impl Shared {
         let answers = prober.ask(question, &self.batch)?;
         let batch = &self.batch;
         let truth = self.truths[given as usize].get_or_insert_with(|| expected(batch, given, turn));
-        Ok(judge(batch, &answers, truth, given, band(prober.kernel())))
+        Ok(judge(batch, &answers, truth, turn.is_some(), given, band(prober.kernel())))
     }
 
     /// Whether something stands between the origin and t = 1.

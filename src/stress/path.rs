@@ -39,6 +39,9 @@ pub(super) struct Met {
     pub(super) normal: Vec3<Dd>,
     /// 1 − l², the square of the cosine between ray and normal where the surface is a sphere.
     pub(super) clearance: f64,
+    /// The length of the gradient of |(x − centre)/scale|, times the least semi-axis: 1 on spheres, and little where an ellipsoid is
+    /// pointed and its normal turns fast. Errors of normals grow like one over it.
+    pub(super) steadiness: f64,
 }
 
 /// What two roots differ by in part of themselves, at the least: nothing less is told apart from the rounding of double-double.
@@ -74,8 +77,11 @@ pub(super) fn nearest(ray: &Ray, surfaces: &[Surface], own: Option<Own>, t_min: 
         let Surface { center, scale } = surfaces[surface];
         let place = ray.origin + ray.direction * t;
         let radii = Vec3::from_f64(scale.abs());
-        let outward = quotient(quotient(place - Vec3::from_f64(center), radii), radii).normalize();
-        Met { t, surface, inside, place, normal: if inside { -outward } else { outward }, clearance }
+        let gradient = quotient(quotient(place - Vec3::from_f64(center), radii), radii);
+        let outward = gradient.normalize();
+        let normal = if inside { -outward } else { outward };
+        let steadiness = gradient.to_f64().length() * scale.abs().min_element();
+        Met { t, surface, inside, place, normal, clearance, steadiness }
     };
     (found.map(met), margin)
 }
@@ -114,8 +120,8 @@ pub(super) enum Turn {
 pub(super) struct End {
     pub(super) met: Option<Met>,
     pub(super) ray: Ray,
-    /// The product of all cosines between rays and normals on the way, in the spaces where the surfaces are spheres: errors grow
-    /// like one over it.
+    /// The product of all cosines between rays and normals on the way, in the spaces where the surfaces are spheres, and of the
+    /// steadiness of the normals at all turns: errors grow like one over it.
     pub(super) cosine: f64,
     /// How near the path comes to another one: the least |1 − l²| of a surface, or square of the cosine of a refracted ray.
     pub(super) margin: f64,
@@ -134,7 +140,7 @@ pub(super) fn follow(
     let (turn, bounces) = turns.unwrap_or((Turn::Mirrored, 0));
     for _ in 0..bounces {
         let Some(at) = met else { break };
-        cosine *= at.clearance.sqrt();
+        cosine *= at.clearance.sqrt() * at.steadiness;
         let length = ray.direction.dot(ray.direction).sqrt();
         let direction = ray.direction * (Dd::ONE / length);
         let mut inside = at.inside;

@@ -124,29 +124,42 @@ pub(super) fn tangent(random: &mut Random, count: usize) -> Batch {
     })
 }
 
-/// Bodies of a box that secondary rays see.
-const BOX_BODIES: usize = 32;
+/// Bodies of a box that secondary rays see, and rays that share a box.
+const BOX_BODIES: u32 = 32;
+const BOX_RAYS: usize = 1000;
 
 pub(super) fn secondary(random: &mut Random, count: usize) -> Batch {
     let mut batch = Batch::default();
-    for index in 0..BOX_BODIES {
-        let scale = DVec3::splat(random.within(0.1, 2.0));
-        let scale = if index % 2 == 0 { scale } else { scale * egg(random) / 3.0 };
-        batch.surfaces.push(Surface { center: carried(random.in_box(10.0)), scale: carried(scale) });
-    }
-    for _ in 0..count {
-        let own = (random.bits() % BOX_BODIES as u64) as u32;
-        let Surface { center, scale } = batch.surfaces[own as usize];
-        let place = random.unit();
+    for index in 0..count {
+        let first = (index / BOX_RAYS) as u32 * BOX_BODIES;
+        if index.is_multiple_of(BOX_RAYS) {
+            for body in 0..BOX_BODIES {
+                let scale = DVec3::splat(random.within(0.1, 2.0));
+                let scale = if body % 2 == 0 { scale } else { scale * egg(random) / 3.0 };
+                batch.surfaces.push(Surface { center: carried(random.in_box(10.0)), scale: carried(scale) });
+            }
+        }
+        let others = &batch.surfaces[first as usize..];
+        let (own, place, origin) = loop {
+            let own = (random.bits() % u64::from(BOX_BODIES)) as usize;
+            let place = random.unit();
+            let origin = carried(others[own].center + others[own].scale * place);
+            let height = |other: &Surface| (((origin - other.center) / other.scale).length() - 1.0).abs();
+            // Origins near surfaces are another class.
+            if others.iter().enumerate().all(|(index, other)| index == own || height(other) > 1e-2) {
+                break (own, place, origin);
+            }
+        };
+        let scale = others[own].scale;
         let direction = random.unit();
         let direction = if direction.dot(place / scale) < 0.0 { -direction } else { direction };
         batch.rays.push(ProbeRay {
-            origin: carried(center + scale * place),
+            origin,
             direction: carried(direction),
-            first: 0,
-            end: BOX_BODIES as u32,
+            first,
+            end: first + BOX_BODIES,
             primary: false,
-            own: Some(own),
+            own: Some(first + own as u32),
         });
     }
     batch

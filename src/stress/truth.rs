@@ -84,10 +84,12 @@ fn length(v: Vec3<Dd>) -> f64 {
 }
 
 /// The errors of one answer in units of 2⁻²³: the relative one of t, that of the place in greatest semi-axes, and those of the
-/// normal and of the mirrored direction, which have unit length.
-fn errors(answer: &Answer, end: &End, greatest: f64) -> Option<[f64; 4]> {
+/// normal and of the mirrored direction, which have unit length. Where a path turns, its origin is off, and t in relation to itself
+/// and the greatest semi-axis.
+fn errors(answer: &Answer, end: &End, greatest: f64, turns: bool) -> Option<[f64; 4]> {
     let met = end.met?;
-    let t = ((Dd::from(answer.value) - met.t) / met.t).abs().hi();
+    let reach = if turns { greatest / length(end.ray.direction) } else { 0.0 };
+    let t = ((Dd::from(answer.value) - met.t) / (met.t + Dd::from(reach))).abs().hi();
     let off = |known: DVec3, truth: Vec3<Dd>| length(Vec3::from_f64(known) - truth);
     let errors = answer.point.map_or([t, 0.0, 0.0, 0.0], |Point { place, place_low, normal, mirrored: direction }| {
         let place = length(Vec3::from_f64(place) + Vec3::from_f64(place_low) - met.place) / greatest;
@@ -101,8 +103,9 @@ pub(super) fn worse(a: f64, b: f64) -> f64 {
     if a.total_cmp(&b).is_gt() { a } else { b }
 }
 
-/// Compares answers with the truth; `band` is how near a path may come to another one where a tier may be wrong.
-pub(super) fn judge(batch: &Batch, answers: &[Answer], truth: &[End], given: Given, band: f64) -> Metrics {
+/// Compares answers with the truth of paths that turn or do not; `band` is how near a path may come to another one where a tier may
+/// be wrong.
+pub(super) fn judge(batch: &Batch, answers: &[Answer], truth: &[End], turns: bool, given: Given, band: f64) -> Metrics {
     let mut metrics = Metrics { count: batch.rays.len() as u64, ..Metrics::default() };
     let mut relative = Vec::with_capacity(answers.len());
     let mut greatest: Option<[f64; 4]> = None;
@@ -115,10 +118,12 @@ pub(super) fn judge(batch: &Batch, answers: &[Answer], truth: &[End], given: Giv
             (None, Some(_)) => metrics.false_misses += 1,
             (Some(found), Some(met)) if found == met => {
                 let scale = given.surface(&batch.surfaces[met.0 as usize]).scale;
-                let Some(errors) = errors(answer, end, scale.abs().max_element()) else { continue };
+                let Some(errors) = errors(answer, end, scale.abs().max_element(), turns) else { continue };
                 relative.push(errors[0] as f32);
                 let worst = greatest.get_or_insert([0.0; 4]);
-                *worst = std::array::from_fn(|i| worse(worst[i], (errors[i] * end.cosine).abs()));
+                let steadiness = end.met.map_or(1.0, |met| met.steadiness);
+                let weights = [1.0, 1.0, steadiness, steadiness].map(|weight| weight * end.cosine);
+                *worst = std::array::from_fn(|i| worse(worst[i], (errors[i] * weights[i]).abs()));
                 continue;
             }
             (Some(found), Some(met)) => {
@@ -147,7 +152,7 @@ pub(super) struct Lighting {
     pub(super) cosine: f64,
     /// cosⁿ of the highlight.
     pub(super) highlight: f64,
-    /// The cosine between ray and normal, by which errors are weighted.
+    /// The cosine between ray and normal times the steadiness of the normal, by which errors are weighted.
     pub(super) seen: f64,
 }
 
@@ -166,7 +171,7 @@ pub(super) fn lighting(batch: &Batch, given: Given, model: Specular) -> Vec<Ligh
         };
         let power = || (Dd::from(batch.exponent) * (closeness - Dd::ONE).log1p()).exp().hi();
         let highlight = if closeness > Dd::ZERO { power() } else { 0.0 };
-        Lighting { cosine: cosine.hi(), highlight, seen: end.cosine }
+        Lighting { cosine: cosine.hi(), highlight, seen: end.cosine * met.steadiness }
     };
     batch.rays.par_iter().zip(&batch.lights).map(lighting).collect()
 }
