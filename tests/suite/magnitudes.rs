@@ -213,7 +213,7 @@ fn lists_hold_at_every_magnitude_and_tier() {
                 // With what exact arithmetic decides.
                 let (double, _) = gpu_picture(&gpu, Tier::Double, &scene, &settings, &Effects::of(&scene, &settings));
                 let expected = cpu(&scene, &settings, Rounding::DOUBLE);
-                assert_eq!(differing(&double.rgb()[..], &expected), 0, "scene {seed}");
+                assert_eq!(differing(double.rgb(), &expected), 0, "scene {seed}");
             }
         }
         // Single precision refuses more of them.
