@@ -43,8 +43,7 @@ fn reflection_range() -> Range {
 struct Exit {
     // Shape index of the sphere.
     shape: u32,
-    // Whether it does: the outside of a convex surface is never met again.
-    exists: bool,
+    // 0, which never counts, from the outside: a convex surface is not met again.
     t: real,
 }
 
@@ -55,7 +54,7 @@ fn exit_of(own: Own, ray: Ray) -> Exit {
         direction *= shape_of(select(own.shape, 0u, own.shape == NO_SHAPE)).inv_scale;
     }
     let projection = -dot(own.local, direction);
-    return Exit(own.shape, own.inside, (projection + projection) / dot(direction, direction));
+    return Exit(own.shape, select(real(0.0), (projection + projection) / dot(direction, direction), own.inside));
 }
 
 // The least root of one sphere that counts.
@@ -79,7 +78,7 @@ fn other_root(ray: Ray, body: Body, range: Range) -> Root {
 fn accepted_root(ray: Ray, body: Body, exit: Exit, range: Range) -> Root {
     let other = other_root(ray, body, range);
     let t = distance_of(exit.t);
-    let counts = exit.exists & is_beyond(t, range.t_min) & is_nearer(t, range.t_max);
+    let counts = is_beyond(t, range.t_min) & is_nearer(t, range.t_max);
     let is_own = exit.shape == body.shape.index;
     return Root(select(other.counts, counts, is_own), either(other.t, t, is_own), other.inside | is_own);
 }
@@ -100,6 +99,6 @@ fn nearer_hit(first: Hit, second: Hit, is_second: bool) -> Hit {
 
 // Whether a root that counts lies beyond t_min and before t = 1.
 fn blocks(ray: Ray, body: Body, exit: Exit, t_min: real) -> bool {
-    let counts = exit.exists & (exit.t > t_min) & (exit.t < real(1.0));
+    let counts = (exit.t > t_min) & (exit.t < real(1.0));
     return select(root_between(ray, body, t_min), counts, exit.shape == body.shape.index);
 }

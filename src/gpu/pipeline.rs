@@ -111,7 +111,7 @@ impl Specialisation {
 
     /// Vectors that keep a path: as `shaders/paths.wgsl` has them.
     pub(super) fn path_vectors(&self) -> u64 {
-        4 + u64::from(self.kernel.carries_low())
+        3 + u64::from(self.kernel.carries_low())
     }
 
     /// The constants by name; booleans are 0 and 1.

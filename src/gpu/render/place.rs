@@ -61,10 +61,17 @@ pub(super) fn place_tiles(pixels: &[u32], tiles: &[[u32; 2]], first: u32, width:
             let lines = pixels.chunks(TILE as usize).skip(above as usize);
             for (j, (row, pixels)) in (y + above..).zip(band.chunks_mut(row_bytes).zip(lines)) {
                 let row = &mut row[tile[0] as usize * 3..][..across * 3];
-                for (i, (target, pixel)) in (tile[0]..).zip(row.as_chunks_mut::<3>().0.iter_mut().zip(pixels)) {
+                let mut any = 0;
+                for (target, pixel) in row.as_chunks_mut::<3>().0.iter_mut().zip(pixels) {
                     let [r, g, b, status] = pixel.to_le_bytes();
                     *target = [r, g, b];
-                    statuses.add(status, [i, j]);
+                    any |= status;
+                }
+                // Most pixels have nothing to say.
+                if any != 0 {
+                    for (i, pixel) in (tile[0]..width).zip(pixels) {
+                        statuses.add(pixel.to_le_bytes()[3], [i, j]);
+                    }
                 }
             }
         }
