@@ -146,7 +146,12 @@ fn stress(args: &Args) -> Result<u8, Failure> {
         let report = Report { device: gpu.info.to_string(), count: args.count, seed: args.seed, seconds, broken, rows };
         outln!("{}", serde_json::to_string_pretty(&report).map_err(|e| Failure::new(OUTPUT, e.to_string()))?);
     } else {
-        outln!("{} promises broken, {seconds:.1} s", if broken == 0 { "no".to_owned() } else { broken.to_string() });
+        let too_few = match rows.iter().filter(|row| matches!(row.verdict, Verdict::TooFew(_))).count() {
+            0 => String::new(),
+            unseen => format!(", {unseen} not fully seen with so few rays"),
+        };
+        let broken = if broken == 0 { "no".to_owned() } else { broken.to_string() };
+        outln!("{broken} promises broken{too_few}, {seconds:.1} s");
     }
     Ok(if broken == 0 { OK } else { BROKEN })
 }

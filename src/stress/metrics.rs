@@ -75,25 +75,25 @@ impl Metrics {
         (self.p50, self.p999, self.max) = (at(0.5), at(0.999), at(1.0));
     }
 
-    /// NaN where the case has no such thing.
-    fn value(&self, quantity: Quantity) -> f64 {
-        match quantity {
+    /// `None` where nothing of the kind was seen: no ray of the case hits anything.
+    fn value(&self, quantity: Quantity) -> Option<f64> {
+        Some(match quantity {
             Quantity::Wrong => self.per_million(self.wrong()),
             Quantity::WrongBeyondBand => self.per_million(self.wrong_beyond_band),
             Quantity::Inversions => self.per_million(self.inversions),
             Quantity::Misclassified => self.misclassified,
-            Quantity::P999 => self.p999.unwrap_or(f64::NAN),
-            Quantity::WorstT => self.worst_t.unwrap_or(f64::NAN),
-            Quantity::WorstPlace => self.worst_place.unwrap_or(f64::NAN),
-            Quantity::WorstNormal => self.worst_normal.unwrap_or(f64::NAN),
-            Quantity::WorstMirrored => self.worst_mirrored.unwrap_or(f64::NAN),
-            Quantity::LightError => self.light_error.unwrap_or(f64::NAN),
+            Quantity::P999 => self.p999?,
+            Quantity::WorstT => self.worst_t?,
+            Quantity::WorstPlace => self.worst_place?,
+            Quantity::WorstNormal => self.worst_normal?,
+            Quantity::WorstMirrored => self.worst_mirrored?,
+            Quantity::LightError => self.light_error?,
             Quantity::NotFinite => self.not_finite as f64,
-            Quantity::Acne => self.acne.map_or(f64::NAN, |count| self.per_million(count)),
-            Quantity::Leaks => self.leaks.map_or(f64::NAN, |count| self.per_million(count)),
-            Quantity::PowerError => self.power_error.unwrap_or(f64::NAN),
-            Quantity::Differing => self.differing.map_or(f64::NAN, |count| count as f64),
-        }
+            Quantity::Acne => self.per_million(self.acne?),
+            Quantity::Leaks => self.per_million(self.leaks?),
+            Quantity::PowerError => self.power_error?,
+            Quantity::Differing => self.differing? as f64,
+        })
     }
 }
 
@@ -186,6 +186,8 @@ pub enum Verdict {
     Pass,
     /// It is broken.
     Fail(Vec<String>),
+    /// What there was holds, but too few rays hit anything for all of it to be seen.
+    TooFew(String),
     /// There is none: the tier does not cover such scenes.
     NotCovered,
     /// There is none.
@@ -201,12 +203,23 @@ impl Verdict {
             Target::NotCovered => Self::NotCovered,
             Target::Reported | Target::NotApplicable => Self::Reported,
             Target::Limits(limits) => {
-                // A NaN breaks every limit.
-                let broken = limits.iter().filter(|limit| !(metrics.value(limit.quantity) <= limit.at_most));
-                let broken: Vec<_> = broken
-                    .map(|l| format!("{} {:.3e} > {:.1e}", l.quantity, metrics.value(l.quantity), l.at_most))
-                    .collect();
-                if broken.is_empty() { Self::Pass } else { Self::Fail(broken) }
+                let mut broken = Vec::new();
+                let mut unseen = Vec::new();
+                for &Limit { quantity, at_most } in limits {
+                    match metrics.value(quantity) {
+                        // A NaN breaks every limit.
+                        Some(value) if !(value <= at_most) => {
+                            broken.push(format!("{quantity} {value:.3e} > {at_most:.1e}"));
+                        }
+                        Some(_) => {}
+                        None => unseen.push(quantity.to_string()),
+                    }
+                }
+                match (broken.is_empty(), unseen.is_empty()) {
+                    (false, _) => Self::Fail(broken),
+                    (true, false) => Self::TooFew(format!("too few rays for {}", unseen.join(", "))),
+                    (true, true) => Self::Pass,
+                }
             }
         }
     }
@@ -216,6 +229,7 @@ impl Verdict {
         match self {
             Self::Pass => "pass",
             Self::Fail(_) => "FAIL",
+            Self::TooFew(_) => "too few",
             Self::NotCovered => "not covered",
             Self::Reported => "reported",
             Self::Refused(_) => "refused",

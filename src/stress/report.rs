@@ -50,7 +50,7 @@ pub fn table(rows: &[Row]) -> String {
         remarks.extend((!m.note.is_empty()).then(|| m.note.clone()));
         match &row.verdict {
             Verdict::Fail(why) => remarks.extend(why.iter().cloned()),
-            Verdict::Refused(why) => remarks.push(why.clone()),
+            Verdict::Refused(why) | Verdict::TooFew(why) => remarks.push(why.clone()),
             _ => {}
         }
         let _ = writeln!(

@@ -67,9 +67,9 @@ fn is_trap(row: &Row) -> bool {
     [Kernel::Schoolbook, Kernel::NoBarrier].iter().any(|kernel| kernel.name() == row.kernel)
 }
 
-/// Whether `row` is of a tier that does not cover the case.
+/// Whether `row` is of a tier that does not cover the case, or shows too little of it.
 fn is_unpromised(row: &Row) -> bool {
-    !is_trap(row) && matches!(row.verdict, Verdict::NotCovered | Verdict::Reported)
+    !is_trap(row) && matches!(row.verdict, Verdict::NotCovered | Verdict::Reported | Verdict::TooFew(_))
 }
 
 fn wrong(row: &Row) -> f64 {

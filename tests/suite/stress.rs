@@ -37,6 +37,17 @@ fn every_tier_keeps_its_promises() {
     }
     let broken = broken(&rows);
     assert!(broken.is_empty(), "\n{}", table(&broken));
+    assert!(rows.iter().all(|row| !matches!(row.verdict, Verdict::TooFew(_))), "\n{}", table(&rows));
+}
+
+/// What nothing hit says nothing about is neither kept nor broken.
+#[test]
+fn too_few_rays_are_no_broken_promise() {
+    let Some(gpu) = gpu("too_few_rays_are_no_broken_promise") else { return };
+    let rows = run(&gpu, &[Kernel::Tier(Tier::Fast)], &named(&["secondary"]), 2, SEED, |_| {}).unwrap();
+    assert!(broken(&rows).is_empty(), "\n{}", table(&rows));
+    assert!(rows.iter().any(|row| matches!(row.verdict, Verdict::TooFew(_))), "\n{}", table(&rows));
+    assert!(!table(&rows).contains("NaN"), "\n{}", table(&rows));
 }
 
 /// Snell's law where all of its numbers are rational: 63² + 16² = 56² + 33² = 65², and 63/56 is 9/8.

@@ -139,7 +139,7 @@ fn a_study_without_a_device_says_what_it_skips() {
 #[test]
 fn hard_cases_have_a_panel_each_and_a_point_for_each_kernel() {
     let Some(gpu) = gpu("hard_cases_have_a_panel_each_and_a_point_for_each_kernel") else { return };
-    let cases = hard_cases(&gpu, 1000, 1, 1).unwrap();
+    let cases = hard_cases(&gpu, 64, 1, 1).unwrap();
     let kernels = cases.costs.len();
     assert_eq!(kernels + cases.skipped.len(), 5);
     let panels = cases.rows.iter().filter(|row| row.kernel == "schoolbook").count();
