@@ -1,7 +1,5 @@
 //! One small kernel, run once: bytes in, `u32` values out.
 
-use wgpu::util::DeviceExt;
-
 use super::device::Gpu;
 use super::error::Error;
 use super::pack::Contents;
@@ -9,7 +7,7 @@ use super::readable::Readable;
 use super::shader::Module;
 use super::spirv::Parsed;
 use super::stage::{Access, Resource, Stage};
-use super::upload::texels;
+use super::upload::{small_buffer, texels};
 
 /// A kernel with its buffers.
 pub(super) struct Job<'a> {
@@ -30,6 +28,10 @@ pub(super) struct Job<'a> {
 impl Job<'_> {
     /// Runs the kernel and returns its output.
     pub(super) fn run(&self, gpu: &Gpu) -> Result<Vec<u32>, Error> {
+        gpu.guarded(|| self.run_once(gpu))
+    }
+
+    fn run_once(&self, gpu: &Gpu) -> Result<Vec<u32>, Error> {
         let module = Parsed::new(self.module).map_err(Error::Lost)?;
         let inputs = self.inputs.iter().map(|&(binding, access, _)| (binding, access));
         let bindings: Vec<_> = inputs.chain([(self.output, Access::ReadWrite)]).collect();
@@ -38,22 +40,19 @@ impl Job<'_> {
             let results = Readable::new(gpu, self.output_len as u64);
             let mut resources = vec![(self.output, Resource::Buffer(results.buffer.clone()))];
             for &(binding, access, contents) in self.inputs {
-                let buffer = |usage| {
-                    let descriptor = wgpu::util::BufferInitDescriptor { label: None, contents, usage };
-                    Resource::Buffer(gpu.device.create_buffer_init(&descriptor))
-                };
+                let buffer = |usage| Resource::Buffer(small_buffer(gpu, contents, usage));
                 let resource = match access {
                     Access::Uniform => buffer(wgpu::BufferUsages::UNIFORM),
                     Access::Read | Access::ReadWrite => buffer(wgpu::BufferUsages::STORAGE),
                     Access::Table(..) | Access::Texels(_) => {
-                        Resource::Texels(texels(gpu, &Contents::packed(contents), 4))
+                        Resource::Texels(texels(gpu, &Contents::packed(contents), 4)?)
                     }
                 };
                 resources.push((binding, resource));
             }
             stage.dispatch(gpu, &stage.bind(gpu, &resources), [self.groups, 1]);
-            results
-        })?;
+            Ok::<_, Error>(results)
+        })??;
         results.read(gpu, self.output_len, <[u32]>::to_vec)
     }
 }

@@ -3,12 +3,14 @@
 use std::borrow::Cow;
 use std::fmt;
 use std::str::FromStr;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::time::Duration;
 
 use serde::Serialize;
 
 use super::ahead::Ahead;
 use super::error::Error;
+use super::guard::guarded;
 use super::kernel_cache::KernelCache;
 use super::pipeline::{Specialisation, Stages, compile};
 use super::selftest::SelfTest;
@@ -145,6 +147,10 @@ pub struct Gpu {
     /// Whether host and device share memory, so that a storage buffer can be mapped.
     pub(super) mappable: bool,
     failure: Arc<Mutex<Option<String>>>,
+    /// Why nothing can be asked of it any more.
+    end: OnceLock<String>,
+    /// How long it may take to answer.
+    patience: Duration,
     /// Those of earlier runs.
     pub(super) kernel_cache: Option<KernelCache>,
     /// What was done before the device was open.
@@ -159,13 +165,21 @@ type Kept = Vec<(Specialisation, Arc<Stages>)>;
 /// For so many specialisations compiled kernels are kept; one more drops the one that was not used for the longest time.
 const MAX_KEPT: usize = 16;
 
+/// A dispatch is sized to take a fraction of a second, and the first one is at the most so much longer: whatever takes longer than
+/// this will never end.
+const PATIENCE: Duration = Duration::from_secs(120);
+
 /// Software devices calculate in `f64` at little more than the price of `f32`, far below that of error-free transforms; hardware
 /// has few `f64` units.
 pub(super) const SOFTWARE_LADDER: [Tier; 3] = [Tier::Fast, Tier::Double, Tier::Robust];
 
 /// All Vulkan devices, in the driver's order.
 pub fn list() -> Result<Vec<DeviceInfo>, Error> {
-    Ok(adapters()?.1.into_iter().map(|(info, _)| info).collect())
+    Ok(guarded(adapters).map_err(cannot_be_asked)??.1.into_iter().map(|(info, _)| info).collect())
+}
+
+fn cannot_be_asked(why: String) -> Error {
+    Error::NoDevice(format!("the Vulkan drivers cannot be asked for their devices: {why}"))
 }
 
 type Adapters = Vec<(DeviceInfo, wgpu::Adapter)>;
@@ -192,10 +206,12 @@ impl Gpu {
     ///
     /// `WGPU_ADAPTER_NAME` and `WGPU_POWER_PREF` decide where the choice leaves it open.
     pub fn open(choice: &Choice) -> Result<Self, Error> {
-        let (_instance, adapters) = adapters()?;
+        let (_instance, adapters) = guarded(adapters).map_err(cannot_be_asked)??;
         let index = choose(choice, adapters.iter().map(|(info, _)| info))?;
         let (info, adapter) = adapters.into_iter().nth(index).ok_or_else(Error::none_found)?;
-        Self::open_adapter(info, &adapter)
+        let name = info.to_string();
+        guarded(|| Self::open_adapter(info, &adapter))
+            .unwrap_or_else(|why| Err(Error::NoDevice(format!("{name} cannot be opened: {why}"))))
     }
 
     fn open_adapter(info: DeviceInfo, adapter: &wgpu::Adapter) -> Result<Self, Error> {
@@ -233,7 +249,19 @@ impl Gpu {
         let mappable = features.contains(wgpu::Features::MAPPABLE_PRIMARY_BUFFERS);
         let tuned = DeviceTuning::of(&info);
         let kernel_cache = keeps_kernels.then(|| KernelCache::open(&device, &adapter.get_info())).flatten();
-        Ok(Self { info, tuned, device, queue, mappable, failure, kernel_cache, ahead: None, kept: None })
+        Ok(Self {
+            info,
+            tuned,
+            device,
+            queue,
+            mappable,
+            failure,
+            end: OnceLock::new(),
+            patience: PATIENCE,
+            kernel_cache,
+            ahead: None,
+            kept: None,
+        })
     }
 
     /// Why compiled kernels of earlier runs are not used, where they could be.
@@ -341,11 +369,46 @@ impl Gpu {
         }
     }
 
+    /// Runs `action` unless the device has come to its end; where a library on the way to the driver panics, it has.
+    pub(super) fn guarded<T>(&self, action: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
+        match self.end.get() {
+            Some(why) => Err(Error::Lost(why.clone())),
+            None => guarded(action).unwrap_or_else(|said| Err(self.ends(format!("{}: {said}", self.info)))),
+        }
+    }
+
+    fn ends(&self, why: String) -> Error {
+        // Closing it would wait for what it still does, or panic once more.
+        std::mem::forget((self.device.clone(), self.queue.clone()));
+        Error::Lost(self.end.get_or_init(|| why).clone())
+    }
+
     /// Waits until everything submitted is done.
     pub(super) fn wait(&self) -> Result<(), Error> {
-        self.checked("waiting for a dispatch", || self.device.poll(wgpu::PollType::wait_indefinitely()))?
-            .map(|_| ())
-            .map_err(|error| Error::Lost(format!("{} stopped answering: {error}", self.info)))
+        self.wait_until(None)
+    }
+
+    /// Waits until this submission is done, or all of them.
+    pub(super) fn wait_until(&self, submission_index: Option<wgpu::SubmissionIndex>) -> Result<(), Error> {
+        let wait = wgpu::PollType::Wait { submission_index, timeout: Some(self.patience) };
+        match self.checked("waiting for a dispatch", || self.device.poll(wait))? {
+            Ok(_) => Ok(()),
+            Err(error @ wgpu::PollError::Timeout) => {
+                let (waited, planned) = (self.patience.as_secs(), self.tuned.tuning.dispatch_ms);
+                let why = format!(
+                    "{} has not answered for {waited} s ({error}); a dispatch is to take {planned} ms",
+                    self.info
+                );
+                Err(self.ends(why))
+            }
+            Err(error) => Err(Error::Lost(format!("{} stopped answering: {error}", self.info))),
+        }
+    }
+
+    /// Waits no longer than this for anything, in place of two minutes.
+    #[must_use]
+    pub fn with_patience(self, patience: Duration) -> Self {
+        Self { patience, ..self }
     }
 
     /// The module of one kernel.

@@ -6,6 +6,7 @@ mod device;
 pub mod drivers;
 mod echo;
 mod error;
+mod guard;
 mod inline;
 pub mod kernel_cache;
 pub mod layout;

@@ -6,7 +6,6 @@ use std::collections::HashMap;
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use wgpu::util::DeviceExt;
 
 use super::device::Gpu;
 use super::error::Error;
@@ -18,6 +17,7 @@ use super::shader::{Kernel, Module, Places, Slots, Storage, Walk};
 use super::spirv::Parsed;
 use super::stage::Access::{Read, ReadWrite, Uniform};
 use super::stage::{Access, Resource, Stage};
+use super::upload::small_buffer;
 use crate::camera::NEAR_T_MIN;
 use crate::effects::{Effect, EffectSet};
 use crate::geometry::{Ellipsoid, range_factor, shape_indices};
@@ -258,6 +258,10 @@ impl<'a> Prober<'a> {
     /// Answers `question` for every ray of `batch`, in order; [`Error::Misuse`] where the parts of the batch do not fit together.
     pub fn ask(&mut self, question: Question, batch: &Batch) -> Result<Vec<Answer>, Error> {
         batch.check(question)?;
+        self.gpu.guarded(|| self.ask_checked(question, batch))
+    }
+
+    fn ask_checked(&mut self, question: Question, batch: &Batch) -> Result<Vec<Answer>, Error> {
         // As in a picture: true spheres need no object space.
         let ellipsoids =
             batch.surfaces.iter().any(|surface| surface.scale.abs().max_element() != surface.scale.abs().min_element());
@@ -281,6 +285,10 @@ impl<'a> Prober<'a> {
     /// The nearest hit of every ray with its shape; [`Error::Misuse`] where there is not one for each.
     pub fn ask_raw(&mut self, batch: &RawBatch) -> Result<Vec<Answer>, Error> {
         batch.check()?;
+        self.gpu.guarded(|| self.ask_raw_checked(batch))
+    }
+
+    fn ask_raw_checked(&mut self, batch: &RawBatch) -> Result<Vec<Answer>, Error> {
         self.prepare(Question::Nearest, true)?;
         let mut answers = Vec::with_capacity(batch.rays.len());
         for (rays, shapes) in batch.rays.chunks(MAX_RAYS).zip(batch.shapes.chunks(MAX_RAYS)) {
@@ -341,8 +349,7 @@ impl<'a> Prober<'a> {
         let group = gpu.checked("reserving buffers", || {
             let buffer = |(binding, contents, usage): (u32, &[u8], wgpu::BufferUsages)| {
                 let contents = if contents.is_empty() { &[0; 256] } else { contents };
-                let descriptor = wgpu::util::BufferInitDescriptor { label: None, contents, usage };
-                (binding, Resource::Buffer(gpu.device.create_buffer_init(&descriptor)))
+                (binding, Resource::Buffer(small_buffer(gpu, contents, usage)))
             };
             let storage = wgpu::BufferUsages::STORAGE;
             let inputs: [(u32, &[u8], wgpu::BufferUsages); 10] = [

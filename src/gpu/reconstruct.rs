@@ -3,8 +3,6 @@
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-use wgpu::util::DeviceExt;
-
 use super::device::Gpu;
 use super::error::Error;
 use super::readable::Readable;
@@ -12,6 +10,7 @@ use super::shader::Module;
 use super::spirv::Parsed;
 use super::stage::Access::{self, Read, ReadWrite, Uniform};
 use super::stage::{Resource, Stage};
+use super::upload::small_buffer;
 use crate::misuse::check_colors;
 use crate::sampling::{Fill, NO_SAMPLE, Samples, flood_steps, packed};
 
@@ -29,17 +28,13 @@ pub struct Reconstructor<'a> {
 impl<'a> Reconstructor<'a> {
     /// Compiles the kernel that finds nearest samples.
     pub fn new(gpu: &'a Gpu) -> Result<Self, Error> {
-        Ok(Self {
-            gpu,
-            jump: stage(gpu, &Module::flood(), "jump", &[Uniform, Read, ReadWrite])?,
-            fills: HashMap::new(),
-        })
+        let jump = gpu.guarded(|| stage(gpu, &Module::flood(), "jump", &[Uniform, Read, ReadWrite]))?;
+        Ok(Self { gpu, jump, fills: HashMap::new() })
     }
 
     /// Where the nearest sample of each pixel lies, packed, pixels in reading order.
     pub fn nearest_samples(&self, samples: &Samples) -> Result<Vec<u32>, Error> {
-        let owners = self.flood(samples)?;
-        owners.read(self.gpu, pixel_count(samples), <[u32]>::to_vec)
+        self.gpu.guarded(|| self.flood(samples)?.read(self.gpu, pixel_count(samples), <[u32]>::to_vec))
     }
 
     /// The whole picture from `colors`, one for each of `samples`, 3 bytes a pixel.
@@ -49,6 +44,10 @@ impl<'a> Reconstructor<'a> {
     /// [`Error::Misuse`] where there is not one for each.
     pub fn filled(&mut self, samples: &Samples, colors: &[[u8; 3]], fill: Fill) -> Result<Vec<u8>, Error> {
         check_colors(samples.pixels().len(), colors.len())?;
+        self.gpu.guarded(|| self.filled_checked(samples, colors, fill))
+    }
+
+    fn filled_checked(&mut self, samples: &Samples, colors: &[[u8; 3]], fill: Fill) -> Result<Vec<u8>, Error> {
         let gpu = self.gpu;
         let owners = self.flood(samples)?;
         let kernel = match self.fills.entry(fill) {
@@ -123,12 +122,11 @@ fn params(gpu: &Gpu, samples: &Samples, step: u32) -> wgpu::Buffer {
     let contents = [samples.size().0, samples.size().1, step, 0];
     let contents = bytemuck::cast_slice(&contents);
     let usage = wgpu::BufferUsages::UNIFORM;
-    gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
+    small_buffer(gpu, contents, usage)
 }
 
 fn storage(gpu: &Gpu, values: &[u32]) -> wgpu::Buffer {
-    let (contents, usage) = (bytemuck::cast_slice(values), wgpu::BufferUsages::STORAGE);
-    gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
+    small_buffer(gpu, bytemuck::cast_slice(values), wgpu::BufferUsages::STORAGE)
 }
 
 /// A kernel whose bindings are used like this, in their order.

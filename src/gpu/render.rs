@@ -13,7 +13,6 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
-use wgpu::util::DeviceExt;
 
 use super::device::Gpu;
 use super::error::Error;
@@ -24,7 +23,7 @@ use super::shader::{Kernel, Slots, Variant, Walk};
 use super::stage::{Resource, Stage};
 use super::tables::{are_too_large, check_fits, copies_fit, copy_resources, list_resources, scene_resources};
 use super::timestamps::Timestamps;
-use super::upload::empty_texels;
+use super::upload::{empty_texels, small_buffer};
 use crate::accel::{Acceleration, Cover, Density, Rounding};
 use crate::brightness::Scalar;
 use crate::camera::Camera;
@@ -219,6 +218,17 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
     }
 
     fn prepared(
+        gpu: &'a Gpu,
+        scene: &Scene,
+        settings: &Settings,
+        effects: &Effects,
+        (kernel, rounding): (Kernel, Rounding),
+        options: &Options,
+    ) -> Result<Self, Error> {
+        gpu.guarded(|| Self::prepared_once(gpu, scene, settings, effects, (kernel, rounding), options))
+    }
+
+    fn prepared_once(
         gpu: &'a Gpu,
         scene: &Scene,
         settings: &Settings,
@@ -531,14 +541,8 @@ impl Work {
         bind(12, &stage);
         bind(15, &pixels.buffer);
         bind(16, &workgroups);
-        let has_next = [0_u32, 1].map(|has_next| {
-            let contents = bytemuck::bytes_of(&has_next);
-            device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: None,
-                contents,
-                usage: wgpu::BufferUsages::UNIFORM,
-            })
-        });
+        let has_next =
+            [0_u32, 1].map(|has_next| small_buffer(gpu, bytemuck::bytes_of(&has_next), wgpu::BufferUsages::UNIFORM));
         let turn = |stage: &Stage, from: usize, goes_on: usize| {
             let [from, to] = [from, 1 - from].map(|half| Resource::Texels(paths[half].clone()));
             let [read, written] = [0, 1].map(|_| Resource::Texels(hits.clone()));

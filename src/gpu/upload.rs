@@ -30,7 +30,7 @@ pub(super) fn upload(
                 write(contents, 0, view.slice(..));
             }
             buffer.unmap();
-            return buffer;
+            return Ok(buffer);
         }
         let buffer = create(usage | wgpu::BufferUsages::COPY_DST, false);
         for start in (0..contents.len()).step_by(BAND) {
@@ -42,10 +42,26 @@ pub(super) fn upload(
             }
             // Only then is the memory on the way free for the next band.
             gpu.queue.submit([]);
-            let _ = gpu.device.poll(wgpu::PollType::wait_indefinitely());
+            gpu.wait()?;
         }
-        buffer
-    })
+        Ok(buffer)
+    })?
+}
+
+/// A small buffer with `contents`.
+pub(super) fn small_buffer(gpu: &Gpu, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    let size = contents.len().next_multiple_of(4).max(4);
+    let mut whole = contents.to_vec();
+    whole.resize(size, 0);
+    let usage = usage | wgpu::BufferUsages::COPY_DST;
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: size as u64,
+        usage,
+        mapped_at_creation: false,
+    });
+    gpu.queue.write_buffer(&buffer, 0, &whole);
+    buffer
 }
 
 /// Texels in a row of a texture that stands for a buffer: as `place_of_texel` of `shaders/tables.wgsl` has it.
@@ -95,11 +111,11 @@ fn texture(gpu: &Gpu, rows: u32, format: wgpu::TextureFormat, usage: wgpu::Textu
 
 /// A texture with `contents` in reading order, in texels of one, two or four `u32`.
 pub(super) fn upload_texels(gpu: &Gpu, contents: &Contents, components: u32) -> Result<wgpu::TextureView, Error> {
-    gpu.checked("filling textures", || texels(gpu, contents, components))
+    gpu.checked("filling textures", || texels(gpu, contents, components))?
 }
 
-/// Likewise; errors are the caller's.
-pub(super) fn texels(gpu: &Gpu, contents: &Contents, components: u32) -> wgpu::TextureView {
+/// Likewise; what the device reports is the caller's.
+pub(super) fn texels(gpu: &Gpu, contents: &Contents, components: u32) -> Result<wgpu::TextureView, Error> {
     let format = texel_format(components);
     let row = (ROW * components * 4) as usize;
     // Whole rows of whole elements of every size.
@@ -133,10 +149,10 @@ pub(super) fn texels(gpu: &Gpu, contents: &Contents, components: u32) -> wgpu::T
         let submission_index = Some(gpu.queue.submit([encoder.finish()]));
         // One band is packed while the one before is copied; only then is the memory on the way free for the next.
         if let Some(before) = on_the_way.replace(submission_index) {
-            let _ = gpu.device.poll(wgpu::PollType::Wait { submission_index: before, timeout: None });
+            gpu.wait_until(before)?;
         }
     }
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
+    Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
 }
 
 /// Packs what lies from byte `start` on.

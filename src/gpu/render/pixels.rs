@@ -16,6 +16,10 @@ impl GpuRenderer<'_, Pixels> {
     /// [`Error::Misuse`] where a pixel is not of the picture, or there is not one colour for each.
     pub fn pixels(&mut self, pixels: &[[u32; 2]], colors: &mut [[u8; 3]]) -> Result<Rendered, Error> {
         check_pixels(self.size, pixels, colors.len())?;
+        self.gpu.guarded(|| self.list(pixels, colors))
+    }
+
+    fn list(&mut self, pixels: &[[u32; 2]], colors: &mut [[u8; 3]]) -> Result<Rendered, Error> {
         colors.fill(self.background);
         let covered: Vec<usize> = (0..pixels.len()).filter(|&index| self.cover.has(pixels[index])).collect();
         let list: Vec<[u32; 2]> = covered.iter().map(|&index| pixels[index]).collect();

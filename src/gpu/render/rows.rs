@@ -20,6 +20,10 @@ impl GpuRenderer<'_, Rows> {
     /// [`Error::Misuse`] where these are no rows of the picture.
     pub fn rows(&mut self, first: u32, rgb: &mut [u8]) -> Result<Rendered, Error> {
         let count = check_rows(self.size, first, rgb.len())?;
+        self.gpu.guarded(|| self.bands(first, count, rgb))
+    }
+
+    fn bands(&mut self, first: u32, count: u32, rgb: &mut [u8]) -> Result<Rendered, Error> {
         let row_bytes = self.size.0 as usize * 3;
         let most = self.tile_words.most_rows();
         let mut rendered = Rendered::default();
