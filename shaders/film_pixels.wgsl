@@ -11,7 +11,7 @@ fn keep_status(slot: u32) {
 }
 
 fn finish(slot: u32, color: vec3r) {
-    var status = select(0u, STATUS_CUT << 24u, is_cut);
+    var status = (dispatch_bits() | select(0u, STATUS_CUT, is_cut)) << 24u;
     if TANGENTS {
         status |= pixels[slot] & (STATUS_TANGENT << 24u);
     }

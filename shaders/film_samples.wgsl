@@ -11,7 +11,7 @@ fn keep_status(slot: u32) {
 }
 
 fn finish(slot: u32, color: vec3r) {
-    var status = select(real(0.0), real(STATUS_CUT), is_cut);
+    var status = real(dispatch_bits()) + select(real(0.0), real(STATUS_CUT), is_cut);
     if TANGENTS {
         status += colors[slot].w;
     }

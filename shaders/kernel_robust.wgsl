@@ -162,15 +162,6 @@ fn place_of(body: Body, scale: vec3r, local: Point) -> Point {
     return pair_sum3(Pair3(body.shape.center_radius.xyz, body.low.center_radius.xyz), offset);
 }
 
-// The other way round.
-fn local_of(body: Body, place: Point) -> vec3r {
-    let from_center = pair_difference3(place, Pair3(body.shape.center_radius.xyz, body.low.center_radius.xyz)).hi;
-    if ELLIPSOIDS {
-        return from_center * body.shape.inv_scale;
-    }
-    return from_center;
-}
-
 // A place seen from a corner of the world, in f32.
 fn offset_from(place: Point, corner: vec3<f32>) -> vec3<f32> {
     return (place.hi - corner) + place.lo;

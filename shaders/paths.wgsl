@@ -4,8 +4,8 @@
 // see tables.wgsl. Each path has VECTORS vectors:
 //   the start of its ray, and the throughput;
 //   the direction, and the index of the sample's result, which is below 2^24;
-//   the colour gathered, and the sphere that the ray leaves: one more than its shape index, which is below 2^24, negative where
-//   the start is on the inner wall;
+//   the colour gathered, and the shape index, below 2^24, of the sphere that the ray leaves;
+//   the start in the object space of that sphere, and 1 where it is on the inner wall;
 //   for the tiers that carry it, what rounding took from the start.
 @group(0) @binding(11) var paths: Table;
 @group(0) @binding(18) var next_paths: texture_storage_2d<rgba32uint, write>;
@@ -30,14 +30,13 @@ fn path_of(index: u32) -> Path {
     let start = vector_at(paths, at);
     let way = vector_at(paths, at + 1u);
     let gathered = vector_at(paths, at + 2u);
+    let local = vector_at(paths, at + 3u);
+    let own = Own(u32(gathered.w), local.w != real(0.0), local.xyz);
     var low = vec3r();
     if CARRIES_LOW {
         low = vector_at(paths, at + VECTORS - 1u).xyz;
     }
-    let origin = point_from(start.xyz, low);
-    let shape = u32(abs(gathered.w)) - 1u;
-    let own = Own(shape, gathered.w < real(0.0), local_of(body_of(shape), origin));
-    return Path(ray_from(origin, way.xyz), own, u32(way.w), gathered.xyz, start.w);
+    return Path(ray_from(point_from(start.xyz, low), way.xyz), own, u32(way.w), gathered.xyz, start.w);
 }
 
 // Keeps a vector of a path of the next bounce.
@@ -56,8 +55,8 @@ fn reflect(surface: Surface, color: vec3r, throughput: real, slot: u32) {
     let at = atomicAdd(&stage.next_path_count, 1u) * VECTORS;
     keep(at, vec4r(high_of(ray.origin), throughput));
     keep(at + 1u, vec4r(direction_of(ray), real(slot)));
-    let own = real(surface.own.shape + 1u);
-    keep(at + 2u, vec4r(color, select(own, -own, surface.own.inside)));
+    keep(at + 2u, vec4r(color, real(surface.own.shape)));
+    keep(at + 3u, vec4r(surface.own.local, select(real(0.0), real(1.0), surface.own.inside)));
     if CARRIES_LOW {
         keep(at + VECTORS - 1u, vec4r(low_of(ray.origin), real(0.0)));
     }

@@ -5,6 +5,8 @@ const STATUS_FINITE: u32 = 0u;
 const STATUS_NOT_FINITE: u32 = 1u;
 const STATUS_CUT: u32 = 2u;
 const STATUS_TANGENT: u32 = 4u;
+// The bits above are the number of the dispatch, which the host gives: whatever a dispatch has not written shows another one.
+const STATUS_FLAGS: u32 = 7u;
 
 fn packed_pixel(color: vec3r) -> u32 {
     let level = vec3<u32>(real(255.0) * clamp(color, vec3r(), vec3r(real(1.0))) + params.quantize_bias);

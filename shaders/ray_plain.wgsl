@@ -53,15 +53,6 @@ fn place_of(body: Body, scale: vec3r, local: vec3r) -> Point {
     return body.shape.center_radius.xyz + local;
 }
 
-// The other way round.
-fn local_of(body: Body, place: Point) -> vec3r {
-    let from_center = place - body.shape.center_radius.xyz;
-    if ELLIPSOIDS {
-        return from_center * body.shape.inv_scale;
-    }
-    return from_center;
-}
-
 // A place seen from a corner of the world, in f32.
 fn offset_from(place: Point, corner: vec3<f32>) -> vec3<f32> {
     return vec3<f32>(place - vec3r(corner));

@@ -11,10 +11,18 @@ fn resolve(@builtin(global_invocation_id) id: vec3<u32>) {
     let first = colors[id.x * SAMPLES * SAMPLES];
     var excess = vec3r();
     var status = u32(first.w);
+    var is_whole = true;
+    // A sample that was cut stands for those that follow.
+    var is_cut = (status & STATUS_CUT) != 0u;
     for (var sample = 1u; sample < SAMPLES * SAMPLES; sample++) {
         let color = colors[id.x * SAMPLES * SAMPLES + sample];
         excess += color.xyz - first.xyz;
-        status |= u32(color.w);
+        let own = u32(color.w);
+        is_whole &= is_cut | ((own | STATUS_FLAGS) == (status | STATUS_FLAGS));
+        status |= select(own & STATUS_FLAGS, 0u, is_cut);
+        is_cut |= (own & STATUS_CUT) != 0u;
     }
+    // No dispatch is number 0.
+    status &= select(STATUS_FLAGS, 255u, is_whole);
     pixels[id.x] = packed_pixel(first.xyz + excess / real(SAMPLES * SAMPLES)) | (status << 24u);
 }

@@ -4,11 +4,17 @@ struct Tiles {
     // Bits of a tile's column in its word; those above them are its row, counted from this one.
     column_bits: u32,
     first_row: u32,
+    // Above the flags of a status byte.
+    dispatch_bits: u32,
     // Tiles that a sphere may cover. The length is a quarter of MAX_DISPATCH_TILES of src/gpu/render.rs.
     @align(16) words: array<vec4<u32>, 4095>,
 }
 
 @group(0) @binding(6) var<uniform> tiles: Tiles;
+
+fn dispatch_bits() -> u32 {
+    return tiles.dispatch_bits;
+}
 
 // One workgroup casts the primary rays of one tile, row by row, and shades what they hit.
 @compute @workgroup_size(64)

@@ -15,6 +15,7 @@ use crate::precision::Tier;
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::tiles::TILE;
+use crate::verify::{Verifier, Verify};
 
 pub use crate::gpu::{Options, Output, Pixels, Rows};
 pub use partial::{Filler, PartialPicture, render_partial};
@@ -105,7 +106,12 @@ impl CpuEngine {
 pub struct DeviceEngine<'a, O> {
     renderer: GpuRenderer<'a, O>,
     prepare: Duration,
+    verifier: Option<Verifier>,
     tangents: Option<Tangents>,
+    /// What the reference has taken to decide them.
+    decided: Duration,
+    /// Pixels of which the device has cut loops short.
+    cut: u64,
 }
 
 /// What decides whether rays touch spheres: the reference, once such a ray is met.
@@ -115,42 +121,42 @@ struct Tangents {
     settings: Settings,
     effects: Effects,
     reference: OnceCell<Reference<f64>>,
-    took: Duration,
 }
 
 impl Tangents {
     fn new(scene: &Scene, settings: &Settings, effects: &Effects) -> Self {
-        Self {
-            scene: scene.clone(),
-            settings: *settings,
-            effects: effects.clone(),
-            reference: OnceCell::new(),
-            took: Duration::ZERO,
-        }
+        Self { scene: scene.clone(), settings: *settings, effects: effects.clone(), reference: OnceCell::new() }
     }
 
-    /// The colours of these pixels, and how many are not finite.
-    fn decided(&mut self, pixels: &[[u32; 2]]) -> Result<(Vec<[u8; 3]>, u64), Misuse> {
-        let start = Instant::now();
-        let mut colors = vec![[0; 3]; pixels.len()];
-        let reference = self.reference.get_or_init(|| Reference::new(&self.scene, &self.settings, &self.effects));
-        let tally = reference.pixels(pixels, &mut colors)?;
-        self.took += start.elapsed();
-        Ok((colors, tally.not_finite))
+    fn reference(&self) -> &Reference<f64> {
+        self.reference.get_or_init(|| Reference::new(&self.scene, &self.settings, &self.effects))
     }
 }
 
 impl<O: Output> DeviceEngine<'_, O> {
-    /// Decides what rounding could not; `place` puts a pixel's colour where it belongs. Returns how many pixels are not finite.
+    /// Decides what rounding could not and calculates what the device cannot; `place` puts a pixel's colour where it belongs. Returns how many pixels are not finite.
     fn decide(
         &mut self,
-        Rendered { not_finite, tangents }: Rendered,
+        Rendered { not_finite, mut tangents, cut }: Rendered,
         mut place: impl FnMut([u32; 2], [u8; 3]),
     ) -> Result<u64, gpu::Error> {
-        let Some(reference) = self.tangents.as_mut().filter(|_| !tangents.is_empty()) else { return Ok(not_finite) };
-        let (colors, decided) = reference.decided(&tangents)?;
+        if tangents.is_empty() && cut.is_empty() {
+            return Ok(not_finite);
+        }
+        let reference = match (&self.verifier, &self.tangents) {
+            (Some(verifier), _) => verifier.reference(),
+            (None, Some(tangents)) => tangents.reference(),
+            (None, None) if cut.is_empty() => return Ok(not_finite),
+            (None, None) => return Err(self.renderer.too_few_turns(cut.len())),
+        };
+        self.cut += cut.len() as u64;
+        tangents.extend(cut);
+        let start = Instant::now();
+        let mut colors = vec![[0; 3]; tangents.len()];
+        let tally = reference.pixels(&tangents, &mut colors)?;
         tangents.into_iter().zip(colors).for_each(|(pixel, color)| place(pixel, color));
-        Ok(not_finite + decided)
+        self.decided += start.elapsed();
+        Ok(not_finite + tally.not_finite)
     }
 }
 
@@ -177,7 +183,10 @@ impl<'a> Engine<'a> {
                 let rendered = gpu.renderer.rows(first, rgb)?;
                 let width = gpu.renderer.size().0 as usize;
                 let pixels = rgb.as_chunks_mut::<3>().0;
-                gpu.decide(rendered, |[x, y], color| pixels[(y - first) as usize * width + x as usize] = color)
+                let not_finite =
+                    gpu.decide(rendered, |[x, y], color| pixels[(y - first) as usize * width + x as usize] = color)?;
+                gpu.verifier.as_mut().map_or(Ok(()), |verifier| verifier.rows(first, rgb))?;
+                Ok(not_finite)
             }
         }
     }
@@ -192,6 +201,19 @@ impl<'a, O: Output> Engine<'a, O> {
         effects: &Effects,
         options: &Options,
     ) -> Result<Self, gpu::Error> {
+        Self::verified(backend, scene, settings, effects, options, Verify::Nothing)
+    }
+
+    /// Likewise; a device's pixels that `verify` chooses are calculated by the reference, too, and where rounding does not explain
+    /// what it has, the picture is an error: [`gpu::Error::Wrong`].
+    pub fn verified(
+        backend: Backend<'a>,
+        scene: &Scene,
+        settings: &Settings,
+        effects: &Effects,
+        options: &Options,
+        verify: Verify,
+    ) -> Result<Self, gpu::Error> {
         let start = Instant::now();
         Ok(match backend {
             Backend::Reference => {
@@ -205,9 +227,16 @@ impl<'a, O: Output> Engine<'a, O> {
                 }))
             }
             Backend::Device(gpu, tier) => {
-                let renderer = GpuRenderer::with(gpu, scene, settings, effects, tier, options)?;
-                let tangents = renderer.tells_tangents().then(|| Tangents::new(scene, settings, effects));
-                Self::Gpu(Box::new(DeviceEngine { renderer, prepare: start.elapsed(), tangents }))
+                let (renderer, verifier) = if verify == Verify::Nothing {
+                    (GpuRenderer::with(gpu, scene, settings, effects, tier, options)?, None)
+                } else {
+                    let (renderer, accel) = GpuRenderer::with_lists(gpu, scene, settings, effects, tier, options)?;
+                    (renderer, Verifier::new(scene, settings, effects, accel, backend.judge(), verify))
+                };
+                let decides = renderer.tells_tangents() && verifier.is_none();
+                let tangents = decides.then(|| Tangents::new(scene, settings, effects));
+                let (prepare, decided) = (start.elapsed(), Duration::ZERO);
+                Self::Gpu(Box::new(DeviceEngine { renderer, prepare, verifier, tangents, decided, cut: 0 }))
             }
         })
     }
@@ -234,16 +263,34 @@ impl<'a, O: Output> Engine<'a, O> {
             Self::Cpu(cpu) => Times { prepare_ms: ms(cpu.prepare), render_ms: ms(cpu.render), ..Times::default() },
             Self::Gpu(gpu) => {
                 let times = gpu.renderer.times();
-                let decided = gpu.tangents.as_ref().map_or(Duration::ZERO, |tangents| tangents.took);
                 Times {
                     prepare_ms: ms(gpu.prepare),
                     compile_ms: ms(times.compile),
-                    render_ms: ms(times.render + decided),
+                    render_ms: ms(times.render + gpu.decided),
                     read_back_ms: ms(times.read_back),
                     longest_dispatch_ms: ms(times.longest_dispatch),
                     dispatches: times.dispatches,
                 }
             }
+        }
+    }
+
+    /// How many pixels so far the reference has calculated in place of the device, whose loops have too few turns for them.
+    pub fn cut(&self) -> u64 {
+        match self {
+            Self::Cpu(_) => 0,
+            Self::Gpu(gpu) => gpu.cut,
+        }
+    }
+
+    /// How many pixels were held against the reference, and how long that has taken, in ms; `None` where none were to be.
+    pub fn verification(&self) -> Option<(u64, f64)> {
+        match self {
+            Self::Cpu(_) => None,
+            Self::Gpu(gpu) => gpu.verifier.as_ref().map(|verifier| {
+                let (pixels, took) = verifier.cost();
+                (pixels, ms(took))
+            }),
         }
     }
 

@@ -32,6 +32,7 @@ pub mod stress;
 pub mod study;
 pub mod tiles;
 pub mod tuning;
+pub mod verify;
 pub mod view;
 #[cfg(feature = "view")]
 pub mod viewer;

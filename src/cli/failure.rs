@@ -57,7 +57,7 @@ impl From<gpu::Error> for Failure {
     fn from(error: gpu::Error) -> Self {
         let code = match error {
             gpu::Error::NoDevice(_) => NO_DEVICE,
-            gpu::Error::Lost(_) => DEVICE_LOST,
+            gpu::Error::Lost(_) | gpu::Error::Wrong(_) => DEVICE_LOST,
             gpu::Error::Misuse(_) => USAGE,
         };
         Self::new(code, error.to_string())

@@ -22,6 +22,15 @@ pub(super) struct Sampled {
     pub fill_ms: f64,
 }
 
+/// What of a device's picture was calculated again.
+#[derive(Debug, Serialize)]
+pub(super) struct Verified {
+    /// Pixels, all of which the reference has, too, but for rounding.
+    pub pixels: u64,
+    /// What that took.
+    pub ms: f64,
+}
+
 /// Everything worth knowing of one rendered picture.
 #[derive(Debug, Serialize)]
 pub(super) struct Stats {
@@ -43,6 +52,9 @@ pub(super) struct Stats {
     pub sampled: Option<Sampled>,
     pub rays: Option<Rays>,
     pub not_finite_pixels: u64,
+    /// Absent where nothing was.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub verified: Option<Verified>,
     /// Reading and parsing the scene.
     pub parse_ms: f64,
     /// Finding and opening the device.
@@ -87,6 +99,9 @@ impl Stats {
         }
         if let Some(Rays { primary, shadow, reflection }) = self.rays {
             row("rays", format!("{primary} primary, {shadow} shadow, {reflection} reflection"));
+        }
+        if let Some(Verified { pixels, ms }) = &self.verified {
+            row("verified", format!("{pixels} pixels by the CPU reference in {ms:.3} ms"));
         }
         let times = [
             ("parse", self.parse_ms),

@@ -9,7 +9,7 @@ use super::scene::World;
 use super::trace::trace;
 use super::vec3::Vec3;
 use super::witness::Witness;
-use crate::accel::Rounding;
+use crate::accel::{Acceleration, Rounding};
 use crate::camera::Camera;
 use crate::effects::{Effect, Effects};
 use crate::exact::ExactScene;
@@ -34,13 +34,29 @@ impl<T: Real> Reference<T> {
 
     /// Likewise, with lists of spheres for a renderer that rounds like this, at least like `T`.
     pub fn with_rounding(scene: &Scene, settings: &Settings, effects: &Effects, rounding: Rounding) -> Self {
+        Self::prepared(scene, settings, effects, |scene, camera| {
+            Acceleration::new(scene, camera, effects.set, rounding)
+        })
+    }
+
+    /// Likewise, with lists of spheres that were made for another renderer of this scene, which rounds at least like `T`.
+    pub fn with_lists(scene: &Scene, settings: &Settings, effects: &Effects, accel: Acceleration) -> Self {
+        Self::prepared(scene, settings, effects, |_, _| accel)
+    }
+
+    fn prepared(
+        scene: &Scene,
+        settings: &Settings,
+        effects: &Effects,
+        accel: impl FnOnce(&Scene, &Camera) -> Acceleration,
+    ) -> Self {
         let exact = ExactScene::new(scene, settings, effects.set.has(Effect::Ellipsoids));
         let (near, eye) = (scene.window.near, settings.view.eye.length());
         let (scene, settings) = in_range(scene, settings);
         let camera = Camera::new(&scene, &settings);
         let eye = eye * (scene.window.near / near);
         Self {
-            world: World::new(&scene, &settings, effects, &camera, rounding, exact, eye),
+            world: World::new(&scene, &settings, effects, &camera, accel(&scene, &camera), exact, eye),
             camera,
             quantize: settings.quantize,
         }

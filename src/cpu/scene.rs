@@ -6,7 +6,7 @@ use super::intersect::Range;
 use super::real::Real;
 use super::tangent::Tangents;
 use super::vec3::Vec3;
-use crate::accel::{Acceleration, Rounding};
+use crate::accel::Acceleration;
 use crate::camera::Camera;
 use crate::effects::{Effect, EffectSet, Effects};
 use crate::exact::ExactScene;
@@ -101,7 +101,7 @@ impl<T: Real> World<T> {
         settings: &Settings,
         effects: &Effects,
         camera: &Camera,
-        rounding: Rounding,
+        accel: Acceleration,
         exact: ExactScene,
         eye: f64,
     ) -> Self {
@@ -136,7 +136,7 @@ impl<T: Real> World<T> {
             refracts: on(Effect::Refraction),
             specular: settings.specular,
             max_depth: effects.depth,
-            accel: Acceleration::new(scene, camera, effects.set, rounding),
+            accel,
             tangents: Tangents::of(ellipsoids.par_iter().copied(), eye, camera, T::ROUNDING.tests),
             exact,
         }

@@ -25,9 +25,11 @@ impl Engine<'_, Pixels> {
                 if !rendered.tangents.is_empty() {
                     pixels.iter().enumerate().for_each(|(place, &pixel)| places.entry(pixel).or_default().push(place));
                 }
-                gpu.decide(rendered, |pixel, color| {
+                let not_finite = gpu.decide(rendered, |pixel, color| {
                     places.get(&pixel).into_iter().flatten().for_each(|&place| colors[place] = color);
-                })
+                })?;
+                gpu.verifier.as_mut().map_or(Ok(()), |verifier| verifier.list(pixels, colors))?;
+                Ok(not_finite)
             }
         }
     }

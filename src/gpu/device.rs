@@ -175,10 +175,10 @@ pub(super) const SOFTWARE_LADDER: [Tier; 3] = [Tier::Fast, Tier::Double, Tier::R
 
 /// All Vulkan devices, in the driver's order.
 pub fn list() -> Result<Vec<DeviceInfo>, Error> {
-    Ok(guarded(adapters).map_err(cannot_be_asked)??.1.into_iter().map(|(info, _)| info).collect())
+    Ok(guarded(adapters).map_err(|why| cannot_be_asked(&why))??.1.into_iter().map(|(info, _)| info).collect())
 }
 
-fn cannot_be_asked(why: String) -> Error {
+fn cannot_be_asked(why: &str) -> Error {
     Error::NoDevice(format!("the Vulkan drivers cannot be asked for their devices: {why}"))
 }
 
@@ -206,7 +206,7 @@ impl Gpu {
     ///
     /// `WGPU_ADAPTER_NAME` and `WGPU_POWER_PREF` decide where the choice leaves it open.
     pub fn open(choice: &Choice) -> Result<Self, Error> {
-        let (_instance, adapters) = guarded(adapters).map_err(cannot_be_asked)??;
+        let (_instance, adapters) = guarded(adapters).map_err(|why| cannot_be_asked(&why))??;
         let index = choose(choice, adapters.iter().map(|(info, _)| info))?;
         let (info, adapter) = adapters.into_iter().nth(index).ok_or_else(Error::none_found)?;
         let name = info.to_string();

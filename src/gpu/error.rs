@@ -11,6 +11,8 @@ pub enum Error {
     NoDevice(String),
     /// The device was lost, or failed, while it worked.
     Lost(String),
+    /// The device has answered, and its picture is wrong.
+    Wrong(String),
     /// What is asked for makes no sense on any device.
     Misuse(Misuse),
 }
@@ -35,7 +37,7 @@ impl From<Misuse> for Error {
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NoDevice(why) => f.write_str(why),
+            Self::NoDevice(why) | Self::Wrong(why) => f.write_str(why),
             Self::Lost(why) => write!(f, "the device was lost: {why}"),
             Self::Misuse(misuse) => misuse.fmt(f),
         }

@@ -1,9 +1,12 @@
 //! From effects to compiled kernels: the only place that sets the constants of `shaders/effects.wgsl`.
 
 use std::num::NonZeroU32;
+use std::panic::resume_unwind;
+use std::thread::{Builder, Scope, ScopedJoinHandle};
 
 use super::device::Gpu;
 use super::error::Error;
+use super::guard::guarded;
 use super::pack::material_vectors;
 use super::shader::{Kernel, Module, Places, Slots, Storage, Textures, Variant, Walk};
 use super::spirv::Parsed;
@@ -111,7 +114,7 @@ impl Specialisation {
 
     /// Vectors that keep a path: as `shaders/paths.wgsl` has them.
     pub(super) fn path_vectors(&self) -> u64 {
-        3 + u64::from(self.kernel.carries_low())
+        4 + u64::from(self.kernel.carries_low())
     }
 
     /// The constants by name; booleans are 0 and 1.
@@ -235,7 +238,8 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
         Slots::Tiles => (SEE_TILES, Uniform),
         Slots::List => (SEE_SAMPLES, Read),
     };
-    let primary = [(4, vectors), (6, places)];
+    common.push((6, places));
+    let primary = [(4, vectors)];
     let kernel = |entry_point, own: &[(u32, Access)]| {
         Stage::new(gpu, module, entry_point, &constants, &[&common[..], own].concat())
     };
@@ -262,10 +266,10 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
         if !specialisation.keeps_paths() {
             return Ok(Stages { see: see()?, bounce: None, resolve: resolve()? });
         }
-        let see = scope.spawn(see);
+        let see = spawned(scope, see);
         let bounce = || -> Result<Bounce, Error> {
             if let Walk::InTurn(_) = specialisation.walk {
-                let shade = scope.spawn(|| kernel(SHADE_PATHS, &[(11, vectors), (22, words)]));
+                let shade = spawned(scope, || kernel(SHADE_PATHS, &[(11, vectors), (22, words)]));
                 let walk = kernel(WALK_PATHS, &[&[(11, vectors), (23, Texels(1))][..], copies].concat())?;
                 Ok(Bounce { begin: between()?, walk, shade: Some(joined(shade)?) })
             } else {
@@ -277,7 +281,23 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
     })
 }
 
-/// What a thread has compiled.
-fn joined<T>(thread: std::thread::ScopedJoinHandle<Result<T, Error>>) -> Result<T, Error> {
-    thread.join().unwrap_or_else(|_| Err(Error::Lost("compiling the kernels failed".into())))
+/// What is compiled, on a thread of its own where one is to be had.
+enum Compiling<'scope> {
+    Beside(ScopedJoinHandle<'scope, Result<Stage, Error>>),
+    Done(Result<Stage, Error>),
+}
+
+fn spawned<'scope>(
+    scope: &'scope Scope<'scope, '_>,
+    compile: impl Fn() -> Result<Stage, Error> + Copy + Send + 'scope,
+) -> Compiling<'scope> {
+    let guard = move || guarded(compile).unwrap_or_else(|why| Err(Error::Lost(why)));
+    Builder::new().spawn_scoped(scope, guard).map_or_else(|_| Compiling::Done(compile()), Compiling::Beside)
+}
+
+fn joined(compiling: Compiling) -> Result<Stage, Error> {
+    match compiling {
+        Compiling::Beside(thread) => thread.join().unwrap_or_else(|panic| resume_unwind(panic)),
+        Compiling::Done(result) => result,
+    }
 }

@@ -38,7 +38,7 @@ use crate::settings::Settings;
 use crate::tiles::TILE;
 use crate::tuning::Class;
 pub use output::{Output, Pixels, Rows};
-use place::Statuses;
+use place::{Statuses, dispatch_bits};
 use tiles::{MAX_DISPATCH_TILES, TILES_SIZE, TileWords};
 
 /// Pixels of a tile.
@@ -57,19 +57,23 @@ pub struct Options {
     pub pixel_ms: Option<f64>,
 }
 
-/// What the pixels of a picture say of themselves.
+/// What the pixels of a picture say of themselves. Whoever wants all of it has to calculate those of both lists elsewhere.
+#[must_use]
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Rendered {
     /// How many are not finite, those below left out.
     pub not_finite: u64,
     /// Pixels with a ray that passes so near to touching a sphere that rounding decides whether it does: each shows either answer.
     pub tangents: Vec<[u32; 2]>,
+    /// Pixels that need more turns of a loop than the device has for them, some 65,535: what they show is wrong.
+    pub cut: Vec<[u32; 2]>,
 }
 
 impl Rendered {
     fn add(&mut self, other: Self) {
         self.not_finite += other.not_finite;
         self.tangents.extend(other.tangents);
+        self.cut.extend(other.cut);
     }
 }
 
@@ -127,6 +131,8 @@ pub struct GpuRenderer<'a, O = Rows> {
     inputs: Inputs,
     tiles_per_dispatch: u32,
     times: DeviceTimes,
+    /// Dispatches so far, those of no pixel included.
+    submitted: u64,
     timestamps: Option<Timestamps>,
     /// Pixels so far.
     pixels: u64,
@@ -199,7 +205,8 @@ impl<'a> GpuRenderer<'a> {
         kernel: Kernel,
         rounding: Rounding,
     ) -> Result<Self, Error> {
-        Self::prepared(gpu, scene, settings, effects, (kernel, rounding), &Options::default())
+        let kernel = (kernel, rounding);
+        Ok(Self::prepared(gpu, scene, settings, effects, kernel, &Options::default(), false)?.0)
     }
 }
 
@@ -214,7 +221,22 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         options: &Options,
     ) -> Result<Self, Error> {
         let kernel = gpu.kernel(tier)?;
-        Self::prepared(gpu, scene, settings, effects, (kernel, kernel.rounding()), options)
+        Ok(Self::prepared(gpu, scene, settings, effects, (kernel, kernel.rounding()), options, false)?.0)
+    }
+
+    /// Likewise; with the lists of spheres, for another renderer of the same scene that rounds no more than `tier`.
+    pub fn with_lists(
+        gpu: &'a Gpu,
+        scene: &Scene,
+        settings: &Settings,
+        effects: &Effects,
+        tier: Tier,
+        options: &Options,
+    ) -> Result<(Self, Acceleration), Error> {
+        let kernel = gpu.kernel(tier)?;
+        let kernel = (kernel, kernel.rounding());
+        let (renderer, accel) = Self::prepared(gpu, scene, settings, effects, kernel, options, true)?;
+        Ok((renderer, accel.unwrap_or_default()))
     }
 
     fn prepared(
@@ -224,8 +246,9 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         effects: &Effects,
         (kernel, rounding): (Kernel, Rounding),
         options: &Options,
-    ) -> Result<Self, Error> {
-        gpu.guarded(|| Self::prepared_once(gpu, scene, settings, effects, (kernel, rounding), options))
+        keeps_lists: bool,
+    ) -> Result<(Self, Option<Acceleration>), Error> {
+        gpu.guarded(|| Self::prepared_once(gpu, scene, settings, effects, (kernel, rounding), options, keeps_lists))
     }
 
     fn prepared_once(
@@ -235,7 +258,8 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         effects: &Effects,
         (kernel, rounding): (Kernel, Rounding),
         options: &Options,
-    ) -> Result<Self, Error> {
+        keeps_lists: bool,
+    ) -> Result<(Self, Option<Acceleration>), Error> {
         check_picture(scene, settings)?;
         let (near, eye) = (scene.window.near, settings.view.eye.length());
         let (scene, settings) = in_range(scene, settings);
@@ -279,11 +303,11 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         let cover = accel.screen.cover();
         let picture_tiles = u64::from(scene.width.div_ceil(TILE)) * u64::from(scene.height.div_ceil(TILE));
         let covered_tiles = picture_tiles.min(cover.most());
-        // The lists on the host go before the spheres take memory on the device.
+        // Lists that nobody wants any more go before the spheres take memory on the device.
         let mut resources = list_resources(gpu, &list_tables)?;
         resources.extend(copy_resources(gpu, &packed, &accel, &specialisation)?);
         drop(list_tables);
-        drop(accel);
+        let kept = keeps_lists.then_some(accel);
         resources.extend(scene_resources(gpu, &packed, &specialisation)?);
         let samples = u64::from(settings.samples * settings.samples);
         let tests_per_pixel = samples
@@ -296,7 +320,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
             None => tuning.first_dispatch_tests as u64 / tests_per_pixel.saturating_mul(TILE_PIXELS as u64),
             Some(ms) => (tuning.dispatch_ms / (ms * TILE_PIXELS as f64).max(1e-9)) as u64,
         };
-        Ok(Self {
+        let renderer = Self {
             gpu,
             output: PhantomData,
             cover,
@@ -314,10 +338,12 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
             inputs: Inputs { resources, specialisation },
             tiles_per_dispatch: tiles.clamp(1, u64::from(MAX_DISPATCH_TILES)) as u32,
             times: DeviceTimes::default(),
+            submitted: 0,
             timestamps: options.device_clock.then(|| Timestamps::new(gpu)).flatten(),
             pixels: 0,
             rays: [0; 2],
-        })
+        };
+        Ok((renderer, kept))
     }
 
     /// Which kernels render.
@@ -343,6 +369,14 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
     /// Whether the device's own clock is read.
     pub fn has_clock(&self) -> bool {
         self.timestamps.is_some()
+    }
+
+    /// Why a picture is refused of which so many pixels are cut.
+    pub fn too_few_turns(&self, pixels: usize) -> Error {
+        Error::NoDevice(format!(
+            "{pixels} pixels need more turns of a loop than {} has for them; `--device cpu` has no such limit",
+            self.gpu.info
+        ))
     }
 
     /// Primary, shadow and reflection rays of all pixels so far; `None` where they are not counted. Those that need no ray, since no
@@ -391,13 +425,19 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
     /// Tiles, or pixels of a list, as the kernels read them.
     fn packed_places(&self, places: &[[u32; 2]]) -> Vec<u8> {
         match O::SLOTS {
-            Slots::Tiles => self.tile_words.packed(places),
+            Slots::Tiles => self.tile_words.packed(self.dispatch_bits().into(), places),
             Slots::List => {
-                let mut whole = places.to_vec();
-                whole.resize(places.len().next_multiple_of(TILE_PIXELS), [0, 0]);
+                let mut whole = vec![[self.dispatch_bits().into(), 0]];
+                whole.extend(places);
+                whole.resize(1 + places.len().next_multiple_of(TILE_PIXELS), [0, 0]);
                 bytemuck::cast_slice(&whole).to_vec()
             }
         }
+    }
+
+    /// The number of the dispatch that runs, or of the last one.
+    fn dispatch_bits(&self) -> u8 {
+        dispatch_bits(self.submitted)
     }
 
     /// The workgroups over so many tiles, or pixels of a list.
@@ -422,7 +462,8 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
     }
 
     /// Runs all stages over `tiles` and waits for them.
-    fn submit(&self, work: &Work, tiles: &[[u32; 2]]) -> Result<(), Error> {
+    fn submit(&mut self, work: &Work, tiles: &[[u32; 2]]) -> Result<(), Error> {
+        self.submitted += 1;
         self.gpu.queue.write_buffer(&work.tiles, 0, &self.packed_places(tiles));
         self.gpu.queue.write_buffer(&work.stage, 0, &[0; STAGE_SIZE as usize]);
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -527,7 +568,7 @@ impl Work {
         let hits = empty_texels(gpu, if in_turn { 4 * slots } else { 4 }, 1);
         let tiles = match specialisation.slots {
             Slots::Tiles => empty(TILES_SIZE, wgpu::BufferUsages::UNIFORM | copied),
-            Slots::List => empty(pixel_count * 8, storage | copied),
+            Slots::List => empty((1 + pixel_count) * 8, storage | copied),
         };
         let stage = empty(STAGE_SIZE, storage | copied);
         let workgroups = empty(WORKGROUPS_SIZE, storage | wgpu::BufferUsages::INDIRECT);

@@ -39,6 +39,7 @@ mod study;
 mod support;
 mod tangents;
 mod tuning;
+mod verify;
 #[cfg(feature = "view")]
 mod view;
 mod wide;

@@ -63,8 +63,9 @@ impl GpuRenderer<'_, Pixels> {
         colors: &mut [[u8; 3]],
     ) -> Result<Statuses, Error> {
         let start = Instant::now();
+        let dispatch_bits = self.dispatch_bits();
         let statuses = work.pixels.read(self.gpu, places.len(), |values| {
-            let mut statuses = Statuses::default();
+            let mut statuses = Statuses::of(dispatch_bits);
             for (value, &place) in values.iter().zip(places) {
                 let [r, g, b, status] = value.to_le_bytes();
                 colors[place] = [r, g, b];

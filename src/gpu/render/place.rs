@@ -8,17 +8,37 @@ use crate::gpu::error::Error;
 use crate::tiles::TILE;
 
 /// How many pixels say what of themselves: `STATUS_*` of `shaders/quantize.wgsl`.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Statuses {
+    /// The dispatch that they ought to be of.
+    dispatch_bits: u8,
     rendered: Rendered,
-    cut: u64,
+    missing: u64,
+}
+
+/// Numbers of dispatches go round through these.
+const DISPATCHES: u64 = 31;
+
+/// Number `dispatch` as a status byte has it: never 0.
+pub(super) fn dispatch_bits(dispatch: u64) -> u8 {
+    ((dispatch % DISPATCHES) as u8 + 1) << 3
 }
 
 impl Statuses {
+    /// Of no pixel of this dispatch.
+    pub(super) fn of(dispatch_bits: u8) -> Self {
+        Self { dispatch_bits, rendered: Rendered::default(), missing: 0 }
+    }
+
     /// What the pixel in this column and row says.
     pub(super) fn add(&mut self, status: u8, pixel: [u32; 2]) {
-        self.cut += u64::from(status & 2 != 0);
-        if status & 4 != 0 {
+        if status & !7 != self.dispatch_bits {
+            self.missing += 1;
+            return;
+        }
+        if status & 2 != 0 {
+            self.rendered.cut.push(pixel);
+        } else if status & 4 != 0 {
             self.rendered.tangents.push(pixel);
         } else {
             self.rendered.not_finite += u64::from(status & 1 != 0);
@@ -27,35 +47,41 @@ impl Statuses {
 
     fn plus(mut self, other: Self) -> Self {
         self.rendered.add(other.rendered);
-        Self { cut: self.cut + other.cut, ..self }
+        Self { missing: self.missing + other.missing, ..self }
     }
 
-    /// Whether the device has left out something.
+    /// Whether loops have ended before their time.
     pub(super) fn is_cut(&self) -> bool {
-        self.cut > 0
+        !self.rendered.cut.is_empty()
     }
 
-    /// What they say together; an error where the device has left out something.
+    /// What they say together; an error where the device has left out pixels.
     pub(super) fn checked(self, gpu: &Gpu) -> Result<Rendered, Error> {
-        match self.cut {
+        match self.missing {
             0 => Ok(self.rendered),
-            cut => Err(Error::NoDevice(format!(
-                "{cut} pixels need more turns of a loop than {} has for them; `--device cpu` has no such limit",
-                gpu.info
-            ))),
+            missing => {
+                Err(Error::Wrong(format!("{} has left out {missing} pixels of a dispatch without a word", gpu.info)))
+            }
         }
     }
 }
 
-/// Copies pixels in tile order to their places in rows, of which `first` is the first; returns what their statuses say.
-pub(super) fn place_tiles(pixels: &[u32], tiles: &[[u32; 2]], first: u32, width: u32, rgb: &mut [u8]) -> Statuses {
+/// Copies pixels of a dispatch in tile order to their places in rows, of which `first` is the first; returns what their statuses say.
+pub(super) fn place_tiles(
+    pixels: &[u32],
+    dispatch_bits: u8,
+    tiles: &[[u32; 2]],
+    first: u32,
+    width: u32,
+    rgb: &mut [u8],
+) -> Statuses {
     let row_bytes = width as usize * 3;
     let mut by_row: Vec<_> = tiles.iter().zip(pixels.chunks(TILE_PIXELS)).collect();
     by_row.sort_by_key(|(tile, _)| tile[1]);
     // The rows in `band` of the tiles that begin in row `y`, of which the first `above` lie before it.
     let place_row = |y: u32, above: u32, band: &mut [u8]| {
         let start = by_row.partition_point(|(tile, _)| tile[1] < y);
-        let mut statuses = Statuses::default();
+        let mut statuses = Statuses::of(dispatch_bits);
         for (tile, pixels) in by_row[start..].iter().take_while(|(tile, _)| tile[1] == y) {
             let across = TILE.min(width - tile[0]) as usize;
             let lines = pixels.chunks(TILE as usize).skip(above as usize);
@@ -65,7 +91,7 @@ pub(super) fn place_tiles(pixels: &[u32], tiles: &[[u32; 2]], first: u32, width:
                 for (target, pixel) in row.as_chunks_mut::<3>().0.iter_mut().zip(pixels) {
                     let [r, g, b, status] = pixel.to_le_bytes();
                     *target = [r, g, b];
-                    any |= status;
+                    any |= status ^ dispatch_bits;
                 }
                 // Most pixels have nothing to say.
                 if any != 0 {
@@ -84,5 +110,5 @@ pub(super) fn place_tiles(pixels: &[u32], tiles: &[[u32; 2]], first: u32, width:
     let bands = rest.par_chunks_mut(row_bytes * TILE as usize).enumerate();
     let next = first.next_multiple_of(TILE);
     let of_rest = bands.map(|(index, band)| place_row(next + index as u32 * TILE, 0, band));
-    of_first.plus(of_rest.reduce(Statuses::default, Statuses::plus))
+    of_first.plus(of_rest.reduce(|| Statuses::of(dispatch_bits), Statuses::plus))
 }

@@ -77,8 +77,8 @@ impl GpuRenderer<'_, Rows> {
     /// Puts the pixels of `tiles` into `rgb`, whose first row is `first`.
     fn read_tiles(&mut self, work: &Work, tiles: &[[u32; 2]], first: u32, rgb: &mut [u8]) -> Result<Statuses, Error> {
         let start = Instant::now();
-        let width = self.size.0;
-        let place = |pixels: &[u32]| place_tiles(pixels, tiles, first, width, rgb);
+        let (width, dispatch_bits) = (self.size.0, self.dispatch_bits());
+        let place = |pixels: &[u32]| place_tiles(pixels, dispatch_bits, tiles, first, width, rgb);
         let statuses = work.pixels.read(self.gpu, tiles.len() * TILE_PIXELS, place)?;
         self.times.read_back += start.elapsed();
         Ok(statuses)

@@ -26,10 +26,10 @@ impl TileWords {
     }
 
     /// `Tiles` of `shaders/slots_tiles.wgsl`, from the top-left pixels of the tiles.
-    pub(super) fn packed(self, tiles: &[[u32; 2]]) -> Vec<u8> {
+    pub(super) fn packed(self, dispatch_bits: u32, tiles: &[[u32; 2]]) -> Vec<u8> {
         let first_row = tiles.iter().map(|[_, y]| y / TILE).min().unwrap_or_default();
         let words = tiles.iter().map(|[x, y]| (x / TILE) | (y / TILE - first_row) << self.column_bits);
-        let words: Vec<u32> = [self.column_bits, first_row, 0, 0].into_iter().chain(words).collect();
+        let words: Vec<u32> = [self.column_bits, first_row, dispatch_bits, 0].into_iter().chain(words).collect();
         bytemuck::cast_slice(&words).to_vec()
     }
 }
@@ -64,7 +64,7 @@ mod tests {
             for first in [0, (height - rows) / TILE * TILE] {
                 let last = [(width - 1) / TILE * TILE, (first + rows - 1) / TILE * TILE];
                 let tiles = [[0, first], [last[0], first], [0, last[1]], last];
-                assert_eq!(unpacked(&words.packed(&tiles)), tiles, "{width}x{height} from {first}");
+                assert_eq!(unpacked(&words.packed(8, &tiles)), tiles, "{width}x{height} from {first}");
             }
         }
     }

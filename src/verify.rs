@@ -1,0 +1,183 @@
+//! Some pixels of a device's picture beside the reference's.
+//!
+//! A driver may drop a command and say nothing. What a dispatch leaves out shows in its pixels' statuses; where it has calculated
+//! with other numbers than it was given, only another calculation tells. So some pixels of each picture, which its scene chooses,
+//! are calculated by the reference, too. Where they differ, rounding has to explain it.
+
+use std::fmt;
+use std::num::NonZero;
+use std::str::FromStr;
+use std::time::{Duration, Instant};
+
+use crate::accel::{Acceleration, Cover};
+use crate::cpu::{Finding, Judge, Reference};
+use crate::effects::Effects;
+use crate::gpu::Error;
+use crate::random::Random;
+use crate::scene::Scene;
+use crate::settings::Settings;
+
+/// How many pixels of a device's picture are held against the reference.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Verify {
+    /// None.
+    #[default]
+    Nothing,
+    /// So many: a few ms for each thousand spheres.
+    Some(NonZero<u32>),
+    /// All.
+    All,
+}
+
+/// What is verified where nobody has said how much.
+const USUAL: NonZero<u32> = NonZero::new(64).expect("it is not 0");
+/// With more spheres, preparing the reference for them takes more than a hundredth of the time of the picture.
+const MAX_SPHERES: usize = 200_000;
+
+impl Verify {
+    /// What costs next to nothing for a picture of `scene`.
+    pub fn usual(scene: &Scene) -> Self {
+        if scene.spheres.len() > MAX_SPHERES { Self::Nothing } else { Self::Some(USUAL) }
+    }
+}
+
+impl FromStr for Verify {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "all" => Ok(Self::All),
+            "none" | "0" => Ok(Self::Nothing),
+            _ => text.parse().map(Self::Some).map_err(|_| "expected a number of pixels, all or none".into()),
+        }
+    }
+}
+
+impl fmt::Display for Verify {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Nothing => f.write_str("none"),
+            Self::Some(count) => count.fmt(f),
+            Self::All => f.write_str("all"),
+        }
+    }
+}
+
+/// The reference of a scene, and which pixels it looks at.
+#[derive(Debug)]
+pub(crate) struct Verifier {
+    reference: Reference<f64>,
+    judge: Judge,
+    /// In reading order; `None` for all.
+    pixels: Option<Vec<[u32; 2]>>,
+    verified: u64,
+    took: Duration,
+}
+
+impl Verifier {
+    /// For a picture by a renderer whose rounding `judge` knows and whose lists of spheres are `accel`.
+    pub(crate) fn new(
+        scene: &Scene,
+        settings: &Settings,
+        effects: &Effects,
+        accel: Acceleration,
+        judge: Judge,
+        verify: Verify,
+    ) -> Option<Self> {
+        let start = Instant::now();
+        let pixels = match verify {
+            Verify::Nothing => return None,
+            Verify::Some(count) => Some(chosen(scene, &accel.screen.cover(), count.get())),
+            Verify::All => None,
+        };
+        let reference = Reference::with_lists(scene, settings, effects, accel);
+        Some(Self { reference, judge, pixels, verified: 0, took: start.elapsed() })
+    }
+
+    /// The reference.
+    pub(crate) fn reference(&self) -> &Reference<f64> {
+        &self.reference
+    }
+
+    /// How many pixels were held against the reference, and how long that has taken.
+    pub(crate) fn cost(&self) -> (u64, Duration) {
+        (self.verified, self.took)
+    }
+
+    /// Looks at those of the chosen pixels that are in these rows.
+    pub(crate) fn rows(&mut self, first: u32, rgb: &[u8]) -> Result<(), Error> {
+        let (width, _) = self.reference.size();
+        let count = (rgb.len() / (width as usize * 3)) as u32;
+        let rows = first..first + count;
+        let here: Vec<[u32; 2]> = match &self.pixels {
+            Some(pixels) => pixels.iter().copied().filter(|[_, y]| rows.contains(y)).collect(),
+            None => rows.flat_map(|y| (0..width).map(move |x| [x, y])).collect(),
+        };
+        let levels = rgb.as_chunks::<3>().0;
+        self.compare(&here, |[x, y]| levels[(y - first) as usize * width as usize + x as usize])
+    }
+
+    /// Looks at as many of these pixels as are chosen of a picture.
+    pub(crate) fn list(&mut self, pixels: &[[u32; 2]], colors: &[[u8; 3]]) -> Result<(), Error> {
+        let most = self.pixels.as_ref().map_or(pixels.len(), Vec::len).max(1);
+        let indices: Vec<usize> = (0..pixels.len()).step_by(pixels.len().div_ceil(most).max(1)).collect();
+        let here: Vec<[u32; 2]> = indices.iter().map(|&index| pixels[index]).collect();
+        let mut levels = indices.iter().map(|&index| colors[index]);
+        self.compare(&here, |_| levels.next().unwrap_or_default())
+    }
+
+    /// `level` is asked for each of the pixels, in order.
+    fn compare(&mut self, pixels: &[[u32; 2]], mut level: impl FnMut([u32; 2]) -> [u8; 3]) -> Result<(), Error> {
+        let start = Instant::now();
+        let mut expected = vec![[0; 3]; pixels.len()];
+        self.reference.pixels(pixels, &mut expected)?;
+        let pairs = pixels.iter().map(|&pixel| (pixel, level(pixel))).zip(&expected);
+        let differing: Vec<_> = pairs.filter(|((_, level), expected)| level != *expected).collect();
+        if !differing.is_empty() {
+            let trial = self.judge.trial(&self.reference);
+            let wrong = |&&(([x, y], level), _): &&(([u32; 2], [u8; 3]), &[u8; 3])| {
+                trial.explain(x, y, level) == Finding::Unexplained
+            };
+            let count = differing.iter().filter(wrong).count();
+            if let Some(&(([x, y], level), expected)) = differing.iter().find(wrong) {
+                return Err(Error::Wrong(format!(
+                    "the device's picture is wrong: of {} pixels that were calculated again, rounding does not explain {count}. The \
+                     first is x {x}, y {y}: {level:?}, and the reference has {expected:?}",
+                    pixels.len()
+                )));
+            }
+        }
+        self.verified += pixels.len() as u64;
+        self.took += start.elapsed();
+        Ok(())
+    }
+}
+
+/// So many pixels of those that any sphere may cover, the same ones for the same scene, in reading order.
+fn chosen(scene: &Scene, cover: &Cover, count: u32) -> Vec<[u32; 2]> {
+    /// Tries for each, where most of the picture is background.
+    const TRIES: u64 = 64;
+    let numbers = scene.spheres.iter().take(64).flat_map(|sphere| sphere.center.to_array());
+    let seed = numbers.fold(scene.spheres.len() as u64, |seed, x| {
+        (seed.rotate_left(23) ^ x.to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15)
+    });
+    let (width, height) = (scene.width, scene.height);
+    let mut random = Random::new(seed, u64::from(width) << 32 | u64::from(height));
+    let mut at = || {
+        let mut below = |side: u32| (random.bits() % u64::from(side)) as u32;
+        [below(width), below(height)]
+    };
+    let mut pixels: Vec<[u32; 2]> = Vec::new();
+    for _ in 0..TRIES * u64::from(count) {
+        if pixels.len() == count as usize {
+            break;
+        }
+        let pixel = at();
+        if cover.has(pixel) {
+            pixels.push(pixel);
+        }
+    }
+    pixels.sort_unstable_by_key(|&[x, y]| [y, x]);
+    pixels.dedup();
+    pixels
+}
