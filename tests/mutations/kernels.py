@@ -78,14 +78,15 @@ def build():
 
 
 def stress(program):
-    """The first broken promise in words; none where all hold. An error is an exception."""
+    """The first broken promise in words, or the first kernel that is refused; none where all hold. An error is an exception."""
     with subprocess.Popen([program, "stress"], stdout=subprocess.PIPE, text=True, errors="replace") as running:
         for line in running.stdout:
-            row, broken, why = line.partition(" FAIL ")
-            if broken:
+            name, case, kernel = line[3:18].strip(), line[19:38].strip(), line[39:49].strip()
+            _, broken, why = line.partition(" FAIL ")
+            _, refused, objection = line.partition(" refused ")
+            if broken or refused:
                 running.kill()
-                name, case, kernel = row[3:18].strip(), row[19:38].strip(), row[39:49].strip()
-                return f"{name}{', ' if case else ''}{case} at {kernel}: {why.strip()}"
+                return f"{name}{', ' if case else ''}{case} at {kernel}: {why.strip() or 'refused: ' + objection.strip()}"
     if running.returncode != 0:
         raise RuntimeError(f"exit code {running.returncode}")
     return None
