@@ -28,3 +28,17 @@ pub(crate) fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
         words.and_then(|words| words.lines().next()).unwrap_or("no reason given").to_owned()
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_is_an_answer() {
+        assert_eq!(caught(|| 1), Ok(1));
+        assert_eq!(caught(|| -> u8 { panic!("a {}\nand more", "reason") }), Err("a reason".to_owned()));
+        let nested = caught(|| caught(|| -> u8 { panic!("inside") }));
+        assert_eq!(nested, Ok(Err("inside".to_owned())));
+        assert!(!CAUGHT.get());
+    }
+}

@@ -155,7 +155,7 @@ fn compare(args: &Args) -> Result<u8, Failure> {
             (Some(scene), pictures @ ([] | [_])) => with_scene(args, scene, pictures.first().map(PathBuf::as_path))?,
             _ => return Err(Failure::new(USAGE, "compare takes two pictures, or --scene SCENE and at most one")),
         };
-    let difference = Difference::between(&picture_a, &picture_b).map_err(mismatch)?;
+    let difference = Difference::between(&picture_a, &picture_b)?;
     let limits = args.limits.limits(args.scene.is_some());
     let mut exceeded = limits.exceeded(&difference);
     let mut verdict = verdict(&difference, &limits);
@@ -171,7 +171,7 @@ fn compare(args: &Args) -> Result<u8, Failure> {
 
     for (path, picture) in [(&args.heatmap, heatmap as fn(&_, &_) -> _), (&args.three_wide, three_wide)] {
         if let Some(path) = path {
-            save(path, &picture(&picture_a, &picture_b).map_err(mismatch)?)?;
+            save(path, &picture(&picture_a, &picture_b)?)?;
         }
     }
     let draws = args.heatmap.is_some() || args.three_wide.is_some();
@@ -214,7 +214,7 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Subje
     let mut remarks = Remarks::default();
     let encoded = picture.map(open).transpose()?;
     if let Some((name, encoded)) = &encoded {
-        let (width, height) = encoded.size().map_err(unreadable)?;
+        let (width, height) = encoded.size()?;
         if (width, height) != (scene.width, scene.height) {
             let name = visible(name);
             let message = format!("{name} has {width} × {height} pixels, the scene {} × {}", scene.width, scene.height);
@@ -279,13 +279,17 @@ struct Remarks {
     notes: Vec<String>,
 }
 
-fn mismatch(error: SizeMismatch) -> Failure {
-    Failure::new(USAGE, error.to_string())
+impl From<SizeMismatch> for Failure {
+    fn from(mismatch: SizeMismatch) -> Self {
+        Self::new(USAGE, mismatch.to_string())
+    }
 }
 
-fn unreadable(error: ReadError) -> Failure {
-    let hint = if error.problem().lenient_helps() { "\n  help: --lenient repairs this" } else { "" };
-    Failure::new(USAGE, format!("{error}{hint}"))
+impl From<ReadError> for Failure {
+    fn from(error: ReadError) -> Self {
+        let hint = if error.problem().lenient_helps() { "\n  help: --lenient repairs this" } else { "" };
+        Self::new(USAGE, format!("{error}{hint}"))
+    }
 }
 
 /// Both pictures; nothing is decoded before their sizes are known to agree.
@@ -294,7 +298,7 @@ fn two_pictures(args: &Args, a: &Path, b: &Path) -> Result<Subject, Failure> {
         return Err(Failure::new(USAGE, "only one of the pictures can be standard input"));
     }
     let [(name_a, a), (name_b, b)] = [open(a)?, open(b)?];
-    SizeMismatch::of(a.size().map_err(unreadable)?, b.size().map_err(unreadable)?).map_err(mismatch)?;
+    SizeMismatch::of(a.size()?, b.size()?)?;
     let mut remarks = Remarks::default();
     let a = decode(args, &name_a, a, "A", &mut remarks)?;
     let b = decode(args, &name_b, b, "B", &mut remarks)?;
@@ -305,15 +309,15 @@ fn two_pictures(args: &Args, a: &Path, b: &Path) -> Result<Subject, Failure> {
 fn open(path: &Path) -> Result<(String, Encoded), Failure> {
     if path == Path::new("-") {
         let name = "standard input";
-        return Ok((name.into(), Encoded::from_stream(name, std::io::stdin().lock()).map_err(unreadable)?));
+        return Ok((name.into(), Encoded::from_stream(name, std::io::stdin().lock())?));
     }
-    Ok((path.display().to_string(), Encoded::open(path).map_err(unreadable)?))
+    Ok((path.display().to_string(), Encoded::open(path)?))
 }
 
 /// Decodes a picture, which reports call `role`.
 fn decode(args: &Args, name: &str, encoded: Encoded, role: &str, remarks: &mut Remarks) -> Result<Picture, Failure> {
     let leniency = if args.lenient { Leniency::Lenient } else { Leniency::Strict };
-    let reading = encoded.decode(leniency).map_err(unreadable)?;
+    let reading = encoded.decode(leniency)?;
     for warning in &reading.warnings {
         if !args.json {
             errln!("trueray: {}: warning: {warning}", visible(name));
@@ -331,7 +335,7 @@ fn decode(args: &Args, name: &str, encoded: Encoded, role: &str, remarks: &mut R
 
 /// The heat map's scale with the pixels of each colour.
 fn heat_bands(a: &Picture, b: &Picture) -> Result<Vec<HeatBand>, Failure> {
-    let counts = Band::counts(a, b).map_err(mismatch)?;
+    let counts = Band::counts(a, b)?;
     let bands = SCALE.iter().zip(counts);
     Ok(bands
         .map(|(&Band { from, color, legend }, pixels)| HeatBand { from_level: from, color, legend, pixels })

@@ -25,7 +25,7 @@ mod view;
 use std::path::Path;
 use std::process::ExitCode;
 
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use self::failure::Failure;
 use crate::words;
@@ -51,6 +51,7 @@ struct Cli {
     command: Option<Command>,
     /// Whether messages are coloured
     #[arg(long, value_enum, default_value_t, global = true, value_name = "WHEN")]
+    #[allow(dead_code, reason = "read before the rest, for messages about the arguments themselves")]
     color: color::Color,
     #[command(flatten)]
     render: render::Args,
@@ -82,8 +83,11 @@ enum Command {
 /// Runs the program with the arguments of the process.
 pub fn run() -> ExitCode {
     environment::prepare();
-    let cli = Cli::parse();
-    cli.color.choose();
+    // What is wrong with the arguments is coloured as they ask for, too.
+    let (color, arguments) = color::of_arguments(std::env::args_os());
+    let matches = Cli::command().color(color.into()).get_matches_from(arguments);
+    let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+    color.choose();
     let code = match cli.command {
         None => match meant_command(cli.render.first_scene()) {
             Some(failure) => failure.report(),
@@ -115,8 +119,11 @@ fn meant_command(first: Option<&Path>) -> Option<Failure> {
         cli.get_subcommands().map(|command| (distance(command.get_name()), command)).min_by_key(|pair| pair.0);
     // Of a short word every other is near.
     let (_, command) = nearest.filter(|&(slips, _)| slips <= SLIPS && 2 * slips < word.len())?;
-    let word = words::visible(word);
-    let message =
-        format!("there is no file `{word}` and no command of that name; did you mean `{}`?", command.get_name());
+    let (word, name) = (words::visible(word), command.get_name());
+    let message = if word == name {
+        format!("options follow the command: write `trueray {name} …`")
+    } else {
+        format!("there is no file `{word}` and no command of that name; did you mean `{name}`?")
+    };
     Some(Failure::new(failure::USAGE, message))
 }

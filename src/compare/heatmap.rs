@@ -27,7 +27,7 @@ pub const SCALE: [Band; 5] = [
 ];
 
 /// The brightest grey of a pixel that is the same in both pictures.
-const BRIGHTEST_SAME: u32 = 64;
+const BRIGHTEST_SAME: u32 = 48;
 
 impl Band {
     /// How many pixels of each band of [`SCALE`] two pictures have.

@@ -8,6 +8,7 @@ use super::problem::{Problem, Warning};
 use super::read::{Leniency, Reading};
 use super::{Picture, sample_count};
 use crate::panics;
+use crate::words::count;
 
 pub(super) const MAGIC: &[u8; 8] = b"\x89PNG\r\n\x1a\n";
 
@@ -45,6 +46,10 @@ pub(super) fn size(bytes: &[u8]) -> Result<(u32, u32), Problem> {
     }
     if u64::from(width) * u64::from(height) > MAX_PIXELS {
         return Err(Problem::TooManyPixels { width, height, most: MAX_PIXELS });
+    }
+    // Decoders differ in what they make of it, and one panics.
+    if let Some(length) = Chunks::of(bytes).palette.filter(|length| !length.is_multiple_of(3)) {
+        return Err(Problem::Png(format!("the palette has {}, not 3 for each colour", count(length as u64, "byte"))));
     }
     Ok((width, height))
 }
@@ -87,13 +92,15 @@ struct Chunks {
     length: usize,
     /// Whether that is the one that ends the file.
     ends: bool,
+    /// Bytes of the palette.
+    palette: Option<usize>,
     /// Which of [`COLOR_SPACES`] there are.
     color_spaces: Vec<&'static str>,
 }
 
 impl Chunks {
     fn of(bytes: &[u8]) -> Self {
-        let mut chunks = Self { length: MAGIC.len(), ends: false, color_spaces: Vec::new() };
+        let mut chunks = Self { length: MAGIC.len(), ends: false, palette: None, color_spaces: Vec::new() };
         while let Some((length, rest)) = bytes[chunks.length..].split_first_chunk::<4>()
             && let Some(name) = rest.first_chunk::<4>()
             // The name and the checksum are not counted.
@@ -102,6 +109,9 @@ impl Chunks {
             chunks.length += 4 + end;
             let found = COLOR_SPACES.into_iter().find(|known| known.as_bytes() == name);
             chunks.color_spaces.extend(found.filter(|found| !chunks.color_spaces.contains(found)));
+            if name == b"PLTE" {
+                chunks.palette = Some(end - 8);
+            }
             if name == b"IEND" {
                 chunks.ends = true;
                 break;

@@ -63,11 +63,7 @@ impl Header {
             if scanner.peek() == Some(b'#') {
                 scanner.skip_comment();
             }
-            match scanner.peek() {
-                Some(byte) if is_space(byte) => scanner.at += 1,
-                Some(_) => return Err(header_error(line, "white space must follow the maximum".into())),
-                None => {}
-            }
+            scanner.at = (scanner.at + 1).min(scanner.bytes.len());
         }
         Ok(Self { plain, width, height, maximum, samples })
     }

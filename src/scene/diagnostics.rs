@@ -157,7 +157,7 @@ impl Topic {
         match self {
             Self::Color => "warnings about colours outside 0 to 1 are",
             Self::Coefficient => "warnings about coefficients outside 0 to 1 are",
-            Self::Intensity => "warnings about negative intensities are",
+            Self::Intensity => "warnings about negative or huge intensities are",
             Self::Tiny => "warnings about numbers too small for full precision are",
             Self::Window => "warnings about the window are",
         }

@@ -253,7 +253,7 @@ impl<'a> Parser<'a> {
                 return false;
             }
             Rule::Color | Rule::Coefficient => (0.0..=1.0).contains(&number),
-            Rule::Intensity => number >= 0.0,
+            Rule::Intensity => number >= 0.0 && number != WHITE_LEVEL,
         };
         if !usual {
             let topic = match field.rule {
@@ -489,6 +489,7 @@ fn out_of_range(keyword: Keyword, field: &Field, token: &[u8]) -> Detail<'static
 fn unusual(keyword: Keyword, field: &Field, token: &[u8], number: f64) -> Detail<'static> {
     let (text, name, token) = (keyword.text(), field.name, shown(token));
     let (fault, usual) = match field.rule {
+        Rule::Intensity if number > 0.0 => ("far beyond 1", "usually about 0 to 1"),
         Rule::Intensity => ("negative", "usually 0 or more"),
         _ => ("outside 0 to 1", "usually 0 to 1"),
     };
@@ -499,10 +500,18 @@ fn unusual(keyword: Keyword, field: &Field, token: &[u8], number: f64) -> Detail
     }
 }
 
-/// What a colour is that was written as an 8-bit level, such as 1 for 255.
+/// The greatest 8-bit level.
+const WHITE_LEVEL: f64 = 255.0;
+
+/// What a colour or intensity is that was written as an 8-bit level, such as 1 for 255.
 fn level(rule: Rule, number: f64) -> Option<f64> {
-    let is_level = rule == Rule::Color && number.fract() == 0.0 && (2.0..=255.0).contains(&number);
-    is_level.then(|| (number / 255.0 * 1000.0).round() / 1000.0)
+    let is_level = match rule {
+        Rule::Color => number.fract() == 0.0 && (2.0..=WHITE_LEVEL).contains(&number),
+        // Lights may be brighter than 1.
+        Rule::Intensity => number == WHITE_LEVEL,
+        _ => false,
+    };
+    is_level.then(|| (number / WHITE_LEVEL * 1000.0).round() / 1000.0)
 }
 
 fn not_a_number(keyword: Keyword, field: &Field, token: &[u8], fault: Fault) -> Detail<'static> {

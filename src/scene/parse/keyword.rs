@@ -56,7 +56,7 @@ pub(super) enum Rule {
     Color,
     /// Usually 0 to 1.
     Coefficient,
-    /// Usually at least 0.
+    /// Usually at least 0, and no level of 255.
     Intensity,
 }
 
