@@ -45,6 +45,7 @@ fn echo_layout() {
     echo_bits(params.zero);
     echo_bits(params.grid_entries);
     echo(real(params.tangent_margin));
+    echo(params.quantize_scale);
     for (var i = 0u; i < 2u; i++) {
         echo3(shape_of(i).center_radius.xyz);
         echo(shape_of(i).center_radius.w);

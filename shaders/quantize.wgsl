@@ -9,7 +9,7 @@ const STATUS_TANGENT: u32 = 4u;
 const STATUS_FLAGS: u32 = 7u;
 
 fn packed_pixel(color: vec3r) -> u32 {
-    let level = vec3<u32>(real(255.0) * clamp(color, vec3r(), vec3r(real(1.0))) + params.quantize_bias);
+    let level = vec3<u32>(params.quantize_scale * clamp(color, vec3r(), vec3r(real(1.0))) + params.quantize_bias);
     let finite = is_finite(color.x) && is_finite(color.y) && is_finite(color.z);
     let status = select(STATUS_NOT_FINITE, STATUS_FINITE, finite);
     return level.x | (level.y << 8u) | (level.z << 16u) | (status << 24u);

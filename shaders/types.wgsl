@@ -9,7 +9,7 @@ struct Params {
     shadow_t_min: real,
     // A reflection ray's hit counts beyond this.
     reflection_t_min: real,
-    // Added to 255 c before the fraction is cut off.
+    // Added to a colour's level before the fraction is cut off.
     quantize_bias: real,
     // What a blocker must be farther from the light than a point, beside REACH radii, to end a light's list.
     light_slack: real,
@@ -36,6 +36,8 @@ struct Params {
     grid_entries: u32,
     // A primary ray with a discriminant below this, in radii squared, may touch a sphere or not.
     tangent_margin: f32,
+    // What a colour is multiplied by to be a level.
+    quantize_scale: real,
 }
 
 // What the intersection reads of a sphere.

@@ -115,7 +115,7 @@ impl Brightness {
     pub fn problem(&self, scene: &Scene, scalar: Scalar) -> Option<String> {
         self.overflows(scalar).then(|| {
             let source = match self.sphere {
-                Some(sphere) => format!("the numbers of sphere '{}'", scene.sphere_names.get(sphere)),
+                Some(sphere) => format!("the numbers of sphere '{}'", scene.sphere_names.shown(sphere)),
                 None => "the numbers of AMBIENT or BACK".into(),
             };
             let (name, limit) = match scalar {

@@ -12,6 +12,7 @@ use serde::{Serialize, Serializer};
 use crate::geometry::in_range;
 use crate::scene::{Light, Scene, Sphere};
 use crate::settings::Settings;
+use crate::words::count;
 
 /// Something a renderer can simulate or leave out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
@@ -320,7 +321,7 @@ impl<'a> Needs<'a> {
     }
 
     fn name(&self, index: usize) -> String {
-        format!("sphere '{}'", self.scene.sphere_names.get(index))
+        format!("sphere '{}'", self.scene.sphere_names.shown(index))
     }
 
     /// The first sphere with the property, for a reason in words.
@@ -372,7 +373,7 @@ impl<'a> Needs<'a> {
             return Ok(format!("{} may be seen from inside, where it shadows itself", self.name(index)));
         }
         if spheres.len() * lights.len() > MAX_SHADOW_PAIRS {
-            return Ok(format!("{} spheres may stand in each other's light", spheres.len()));
+            return Ok(format!("{} may stand in each other's light", count(spheres.len() as u64, "sphere")));
         }
         for (r, receiver) in spheres.iter().enumerate().filter(|(_, s)| s.kd != 0.0 || s.ks != 0.0) {
             if !beyond_image_plane(self.scene, self.settings, receiver) {
@@ -382,7 +383,7 @@ impl<'a> Needs<'a> {
                 let blocker =
                     spheres.iter().enumerate().find(|&(b, blocker)| b != r && may_block(light, receiver, blocker));
                 if let Some((b, _)) = blocker {
-                    let light = self.scene.light_names.get(l);
+                    let light = self.scene.light_names.shown(l);
                     return Ok(format!("{} may stand between light '{light}' and {}", self.name(b), self.name(r)));
                 }
             }

@@ -45,14 +45,14 @@ pub fn reach(scene: &Scene, effects: &Effects) -> f64 {
 /// The first sphere whose least semi-axis is small, in words.
 fn name_of_small(scene: &Scene, is_small: impl Fn(f64) -> bool + Sync) -> Option<String> {
     let first = scene.spheres.par_iter().position_first(|s| is_small(s.scale.abs().min_element()))?;
-    Some(format!("sphere '{}'", scene.sphere_names.get(first)))
+    Some(format!("sphere '{}'", scene.sphere_names.shown(first)))
 }
 
 /// What is too large or too small beside the rest.
 fn sizes(scene: &Scene, settings: &Settings) -> Option<String> {
     let world = settings.view.relative(scene);
-    let sphere = |index: usize| format!("sphere '{}'", scene.sphere_names.get(index));
-    let light = |index: usize| format!("light '{}'", scene.light_names.get(index));
+    let sphere = |index: usize| format!("sphere '{}'", scene.sphere_names.shown(index));
+    let light = |index: usize| format!("light '{}'", scene.light_names.shown(index));
     let Units { factor, greatest, .. } = Units::of(&world, settings.secondary);
 
     let far_sphere = || world.spheres.par_iter().position_first(|s| !s.center.is_finite()).map(sphere);

@@ -252,7 +252,7 @@ impl Demand {
     pub fn beyond(&self, tier: Tier, scene: &Scene) -> Option<String> {
         let promise = tier.promise();
         let name = |extreme: &Extreme| match extreme.sphere {
-            Some(sphere) => format!("sphere '{}'", scene.sphere_names.get(sphere)),
+            Some(sphere) => format!("sphere '{}'", scene.sphere_names.shown(sphere)),
             None => "no sphere".into(),
         };
         let above = |what: &str, demand: &Extreme, limit: f64| {
@@ -280,16 +280,19 @@ impl Demand {
     /// The demands, a line.
     pub fn summary(&self) -> String {
         let Self { share, nearness, axis_ratio, exponent, reach, brightness } = self;
+        // Of no spheres there is no extreme.
+        let one = |extreme: &Extreme| {
+            if extreme.value.is_finite() { format!("{:.3e}", extreme.value) } else { "none".into() }
+        };
         let shares = Tier::ALL.map(|tier| format!("{:.1e} at {tier}", share[tier as usize].value));
         format!(
-            "share of pixels changed by rounding about {}, nearness {:.3e}, axis ratio {:.3e}, exponent {}, distance/radius {:.3e}, \
-             brightness {:.3e}",
+            "share of pixels changed by rounding about {}, nearness {}, axis ratio {}, exponent {}, distance/radius {}, brightness {}",
             shares.join(", "),
-            nearness.value,
-            axis_ratio.value,
+            one(nearness),
+            one(axis_ratio),
             exponent.value,
-            reach.value,
-            brightness.value
+            one(reach),
+            one(brightness)
         )
     }
 }

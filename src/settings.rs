@@ -36,20 +36,31 @@ pub enum Quantize {
     Truncate,
     /// ⌊255·c + ½⌋.
     Round,
+    /// ⌊255.9·c⌋, as another template of the assignment has it: 255 is not for c = 1 alone.
+    #[serde(rename = "255.9")]
+    Overscale,
 }
 
 impl Quantize {
-    /// What is added to 255·c before the fraction is cut off.
+    /// What c is multiplied by.
+    pub fn scale(self) -> f64 {
+        match self {
+            Self::Truncate | Self::Round => 255.0,
+            Self::Overscale => 255.9,
+        }
+    }
+
+    /// What is added to that before the fraction is cut off.
     pub fn bias(self) -> f64 {
         match self {
-            Self::Truncate => 0.0,
+            Self::Truncate | Self::Overscale => 0.0,
             Self::Round => 0.5,
         }
     }
 
     /// The 8-bit RGB of an unclamped colour; NaN becomes 0.
     pub fn levels(self, color: DVec3) -> [u8; 3] {
-        color.to_array().map(|c| (255.0 * c.clamp(0.0, 1.0) + self.bias()) as u8)
+        color.to_array().map(|c| (self.scale() * c.clamp(0.0, 1.0) + self.bias()) as u8)
     }
 }
 

@@ -8,6 +8,7 @@ use super::stages::STAGES;
 use crate::engine::Rays;
 use crate::report::STYLE;
 use crate::report::number::{short, time};
+use crate::words::count;
 
 /// The page with all measurements; `command` is what made them.
 pub fn html(bench: &Bench, command: &str) -> String {
@@ -41,7 +42,7 @@ fn facts(bench: &Bench) -> Markup {
             dt { "CPU" }
             dd { "the reference in " code { "f64" } ", " (bench.cpu_threads) " threads" }
             dt { "Picture" }
-            dd { "greatest depth " (bench.settings.max_depth) ", " (bench.settings.samples.pow(2)) " samples a pixel" }
+            dd { "greatest depth " (bench.settings.max_depth) ", " (count(bench.settings.samples.pow(2), "sample")) " a pixel" }
             dt { "Runs" }
             dd { (bench.runs) " of each scene and renderer, at most " (time(bench.seconds * 1e3)) " together" }
         }

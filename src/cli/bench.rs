@@ -129,7 +129,7 @@ fn write_scenes(args: &Args, families: &[&Family], folder: &Path) -> Result<(), 
             args.picture.resize(&mut scene);
             let path = folder.join(family.file_stem(size)).with_extension("txt");
             save(&path, &scene.to_string())?;
-            errln!("{}", path.display());
+            errln!("{}", crate::words::visible_path(&path));
         }
     }
     Ok(())

@@ -1,20 +1,21 @@
 //! `trueray check`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use serde::Serialize;
 
 use super::failure::{Failure, OK, OUTPUT, SCENE};
-use super::input::Input;
+use super::input::{Input, print_doubts};
 use super::options::PictureOptions;
 use super::output::{out, outln};
 use super::render::{explanation, precision_explanation};
 use crate::effects::Effects;
 use crate::limits;
 use crate::precision::{self, Selection, Tier};
-use crate::scene::{Diagnostic, Scene, Severity};
+use crate::scene::{Diagnostic, Scene};
 use crate::settings::Settings;
+use crate::words::{count, number, visible};
 
 /// Arguments of `trueray check`.
 #[derive(Debug, clap::Args)]
@@ -37,8 +38,27 @@ struct Summary {
     errors: usize,
     warnings: usize,
     messages: Vec<Message>,
+    /// What of a scene without errors can hardly be meant; counted with the warnings.
+    doubts: Vec<String>,
+    /// Why the file could not be read at all, if so.
+    unread: Option<String>,
     #[serde(flatten)]
     contents: Option<Contents>,
+}
+
+impl Summary {
+    fn of_unread(path: &Path, failure: Failure) -> Self {
+        Self {
+            scene: path.display().to_string(),
+            ok: false,
+            errors: 1,
+            warnings: 0,
+            messages: Vec::new(),
+            doubts: Vec::new(),
+            unread: Some(failure.message),
+            contents: None,
+        }
+    }
 }
 
 /// One error or warning.
@@ -104,17 +124,18 @@ impl Contents {
     }
 
     fn print(&self, name: &str) {
-        outln!("{name}: {} × {}, {} spheres, {} lights", self.width, self.height, self.spheres, self.lights);
-        let corner = |[x, y, z]: DVec3Json| format!("({x}, {y}, {z})");
+        let (spheres, lights) = (count(self.spheres as u64, "sphere"), count(self.lights as u64, "light"));
+        outln!("{}: {} × {}, {spheres}, {lights}", visible(name), self.width, self.height);
+        let corner = |corner: DVec3Json| format!("({})", corner.map(number).join(", "));
         if let (Some([low, high]), Some([least, greatest])) = (self.extent, self.semi_axes) {
             outln!("  extent       {} to {}", corner(low), corner(high));
-            outln!("  semi-axes    {least} to {greatest}");
+            outln!("  semi-axes    {} to {}", number(least), number(greatest));
         }
         if let Some(output) = &self.output {
-            outln!("  output       {output}");
+            outln!("  output       {}", visible(output));
         }
         if self.refractive_spheres > 0 {
-            outln!("  glass        {} spheres with Kt > 0", self.refractive_spheres);
+            outln!("  glass        {} with Kt > 0", count(self.refractive_spheres as u64, "sphere"));
         }
         if let Some(why) = &self.refused {
             outln!("  refused      the scene cannot be rendered: {why}");
@@ -138,13 +159,21 @@ fn check_all(args: &Args) -> Result<u8, Failure> {
         let mut input = match Input::read(path) {
             Ok(input) => input,
             Err(failure) => {
-                code = failure.report();
+                code = failure.code;
+                if args.json {
+                    summaries.push(Summary::of_unread(path, failure));
+                } else {
+                    failure.report();
+                }
                 continue;
             }
         };
+        let mut doubts = Vec::new();
         if let Some(scene) = &mut input.parsed.scene {
+            doubts = args.picture.doubts(scene, &settings);
             args.picture.resize(scene);
         }
+        let warnings = input.parsed.warnings + doubts.len();
         let contents = input.parsed.scene.as_ref().map(|scene| Contents::new(scene, &args.picture, &settings));
         let ok = contents.as_ref().is_some_and(|contents| contents.refused.is_none());
         if !ok {
@@ -152,19 +181,19 @@ fn check_all(args: &Args) -> Result<u8, Failure> {
         }
         if !args.json {
             input.print_diagnostics(false);
+            print_doubts(&input.name, &doubts);
             if let Some(contents) = &contents {
                 contents.print(&input.name);
-                let warnings = input.parsed.diagnostics.iter().filter(|d| d.severity == Severity::Warning).count();
-                outln!(
-                    "  {}",
-                    if warnings == 0 { "no warnings".into() } else { format!("{} warnings", input.parsed.warnings) }
-                );
+                let warnings = if warnings == 0 { "no warnings".into() } else { count(warnings as u64, "warning") };
+                outln!("  {warnings}");
             }
         }
         summaries.push(Summary {
             ok,
             errors: input.parsed.errors,
-            warnings: input.parsed.warnings,
+            warnings,
+            doubts,
+            unread: None,
             messages: input.parsed.diagnostics.iter().map(Message::new).collect(),
             scene: input.name,
             contents,

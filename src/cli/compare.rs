@@ -5,22 +5,25 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::failure::{DIFFERENT, Failure, OK, USAGE};
-use super::input::Loaded;
+use super::input::Input;
 use super::options::{DeviceOptions, PictureOptions, device_name, open_device};
 use super::output::{errln, out, outln};
-use crate::compare::{Difference, Explanation, Limits, Verdict, heatmap, three_wide, verdict};
+use crate::compare::{
+    Band, Difference, Explanation, Limits, SCALE, SizeMismatch, Verdict, heatmap, three_wide, verdict,
+};
 use crate::cpu::{Judge, Reference};
 use crate::effects::Effects;
 use crate::engine::{Backend, Engine, render_picture};
-use crate::film::{Format, Leniency, Picture, Target, read_picture};
+use crate::film::{Encoded, Format, Leniency, Picture, ReadError, Target};
 use crate::gpu::Choice;
 use crate::scene::Scene;
 use crate::settings::Settings;
+use crate::words::{count, visible};
 
 /// Arguments of `trueray compare`.
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
-    /// Two pictures (PPM or PNG); with --scene at most one
+    /// Two pictures (PPM or PNG), one of which may be `-` for standard input; with --scene at most one
     #[arg(value_name = "PICTURE", num_args = 0..=2)]
     pictures: Vec<PathBuf>,
     /// Compare with the CPU reference of this scene: the picture given, or the one that the device renders
@@ -35,7 +38,7 @@ pub(super) struct Args {
     /// Print JSON
     #[arg(long)]
     json: bool,
-    /// Repair malformed PPM files instead of refusing them
+    /// Repair malformed pictures instead of refusing them
     #[arg(long)]
     lenient: bool,
     #[command(flatten)]
@@ -98,12 +101,35 @@ struct Report {
     difference: Difference,
     explanation: Option<Explanation>,
     not_finite_pixels: Option<u64>,
+    /// What had to be got over in reading the pictures.
+    warnings: Vec<String>,
+    /// What the files say besides their samples.
+    notes: Vec<String>,
+    /// The heat map's scale, where one was written.
+    heat_map: Option<Vec<HeatBand>>,
+}
+
+/// What `--json` prints where nothing could be compared.
+#[derive(Debug, Serialize)]
+struct Trouble<'a> {
+    verdict: &'static str,
+    error: &'a str,
+}
+
+/// A colour of the heat map.
+#[derive(Debug, Serialize)]
+struct HeatBand {
+    from_level: u8,
+    color: [u8; 3],
+    legend: &'static str,
+    pixels: u64,
 }
 
 /// Two pictures to compare, with what the scene says of them.
 struct Subject {
     names: [String; 2],
     pictures: [Picture; 2],
+    remarks: Remarks,
     explanation: Option<Explanation>,
     not_finite: Option<u64>,
 }
@@ -113,29 +139,23 @@ pub(super) fn run(args: &Args) -> u8 {
         Ok(code) => code,
         // compare has one code for every trouble, as cmp does.
         Err(failure) => {
-            failure.report();
+            match serde_json::to_string_pretty(&Trouble { verdict: "trouble", error: &failure.message }) {
+                Ok(json) if args.json => outln!("{json}"),
+                _ => _ = failure.report(),
+            }
             USAGE
         }
     }
 }
 
 fn compare(args: &Args) -> Result<u8, Failure> {
-    let Subject { names: [a, b], pictures: [picture_a, picture_b], explanation, not_finite } =
+    let Subject { names: [a, b], pictures: [picture_a, picture_b], remarks, explanation, not_finite } =
         match (&args.scene, args.pictures.as_slice()) {
-            (None, [a, b]) => {
-                let pictures = [read(a, args.lenient)?, read(b, args.lenient)?];
-                Subject {
-                    names: [a, b].map(|p| p.display().to_string()),
-                    pictures,
-                    explanation: None,
-                    not_finite: None,
-                }
-            }
+            (None, [a, b]) => two_pictures(args, a, b)?,
             (Some(scene), pictures @ ([] | [_])) => with_scene(args, scene, pictures.first().map(PathBuf::as_path))?,
             _ => return Err(Failure::new(USAGE, "compare takes two pictures, or --scene SCENE and at most one")),
         };
-    let mismatch = |error: crate::compare::SizeMismatch| Failure::new(USAGE, error.to_string());
-    let difference = Difference::between(&picture_a, &picture_b).map_err(mismatch)?;
+    let difference = Difference::between(&picture_a, &picture_b)?;
     let limits = args.limits.limits(args.scene.is_some());
     let mut exceeded = limits.exceeded(&difference);
     let mut verdict = verdict(&difference, &limits);
@@ -151,16 +171,28 @@ fn compare(args: &Args) -> Result<u8, Failure> {
 
     for (path, picture) in [(&args.heatmap, heatmap as fn(&_, &_) -> _), (&args.three_wide, three_wide)] {
         if let Some(path) = path {
-            save(path, &picture(&picture_a, &picture_b).map_err(mismatch)?)?;
+            save(path, &picture(&picture_a, &picture_b)?)?;
         }
     }
+    let draws = args.heatmap.is_some() || args.three_wide.is_some();
+    let heat_map = if draws { Some(heat_bands(&picture_a, &picture_b)?) } else { None };
+    let Remarks { warnings, notes } = remarks;
     if args.json {
-        let report = Report { a, b, verdict, exceeded, difference, explanation, not_finite_pixels: not_finite };
+        let not_finite_pixels = not_finite;
+        let report =
+            Report { a, b, verdict, exceeded, difference, explanation, not_finite_pixels, warnings, notes, heat_map };
         outln!("{}", serde_json::to_string_pretty(&report).map_err(|e| Failure::new(USAGE, e.to_string()))?);
     } else {
-        out!("{}", difference.report(&a, &b));
+        out!("{}", difference.report(&visible(&a), &visible(&b)));
+        for note in &notes {
+            outln!("note              {note}");
+        }
         if let Some(explanation) = &explanation {
             out!("{}", explanation.report());
+        }
+        for (index, HeatBand { legend, pixels, .. }) in heat_map.iter().flatten().enumerate() {
+            let label = if index == 0 { "heat map" } else { "" };
+            outln!("{label:<17} {legend} ({})", count(*pixels, "pixel"));
         }
         for limit in &exceeded {
             outln!("over the limit    {limit}");
@@ -172,14 +204,29 @@ fn compare(args: &Args) -> Result<u8, Failure> {
 
 /// The picture given, or the device's, against the scene's reference.
 fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Subject, Failure> {
-    let mut loaded = Loaded::read(scene, false)?;
+    let input = Input::read(scene)?;
+    if args.json && input.parsed.scene.is_none() {
+        return Err(Failure::new(USAGE, input.parsed.report(false).trim_end()));
+    }
+    let mut loaded = input.into_renderable(args.json)?;
     args.picture.resize(&mut loaded.scene);
     let scene = &loaded.scene;
+    let mut remarks = Remarks::default();
+    let encoded = picture.map(open).transpose()?;
+    if let Some((name, encoded)) = &encoded {
+        let (width, height) = encoded.size()?;
+        if (width, height) != (scene.width, scene.height) {
+            let name = visible(name);
+            let message = format!("{name} has {width} × {height} pixels, the scene {} × {}", scene.width, scene.height);
+            return Err(Failure::new(USAGE, message));
+        }
+    }
     let settings = args.picture.settings()?;
     let effects = args.picture.renderable_effects(scene, &settings)?;
-    let (name, picture, not_finite, judge) = if let Some(path) = picture {
+    let (name, picture, not_finite, judge) = if let Some((name, encoded)) = encoded {
+        let picture = decode(args, &name, encoded, "the picture", &mut remarks)?;
         let judge = judge_of_unknown(&args.device, scene, &settings, &effects)?;
-        (path.display().to_string(), read(path, args.lenient)?, None, judge)
+        (name, picture, None, judge)
     } else {
         // Comparing the reference with itself would say nothing: auto means a device here.
         let choice = if args.device.device == Choice::Auto { &Choice::Gpu } else { &args.device.device };
@@ -196,15 +243,10 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Subje
     };
     let (rgb, _) = render_picture(&mut Engine::new(Backend::Reference, scene, &settings, &effects)?)?;
     let expected = self::picture(scene, rgb)?;
-    if (picture.width(), picture.height()) != (expected.width(), expected.height()) {
-        let (width, height) = (picture.width(), picture.height());
-        let message = format!("{name} has {width} × {height} pixels, the scene {} × {}", scene.width, scene.height);
-        return Err(Failure::new(USAGE, message));
-    }
     let reference = Reference::new(scene, &settings, &effects);
     let explanation = Explanation::of(&picture, &expected, &reference, &judge);
     let names = [name, format!("reference of {}", loaded.name)];
-    Ok(Subject { names, pictures: [picture, expected], explanation: Some(explanation), not_finite })
+    Ok(Subject { names, pictures: [picture, expected], remarks, explanation: Some(explanation), not_finite })
 }
 
 /// The judge of a picture of unknown origin: as if it came from the device that is asked for or, for auto, from the one that would render
@@ -228,16 +270,76 @@ fn picture(scene: &Scene, rgb: Vec<u8>) -> Result<Picture, Failure> {
     Picture::new(scene.width, scene.height, rgb).map_err(|error| Failure::new(USAGE, error.to_string()))
 }
 
-fn read(path: &Path, lenient: bool) -> Result<Picture, Failure> {
-    let leniency = if lenient { Leniency::Lenient } else { Leniency::Strict };
-    let reading = read_picture(path, leniency).map_err(|error| {
+/// What is worth telling of the picture files.
+#[derive(Default)]
+struct Remarks {
+    /// What had to be got over.
+    warnings: Vec<String>,
+    /// What does not matter here, but does to other programs.
+    notes: Vec<String>,
+}
+
+impl From<SizeMismatch> for Failure {
+    fn from(mismatch: SizeMismatch) -> Self {
+        Self::new(USAGE, mismatch.to_string())
+    }
+}
+
+impl From<ReadError> for Failure {
+    fn from(error: ReadError) -> Self {
         let hint = if error.problem().lenient_helps() { "\n  help: --lenient repairs this" } else { "" };
-        Failure::new(USAGE, format!("{error}{hint}"))
-    })?;
+        Self::new(USAGE, format!("{error}{hint}"))
+    }
+}
+
+/// Both pictures; nothing is decoded before their sizes are known to agree.
+fn two_pictures(args: &Args, a: &Path, b: &Path) -> Result<Subject, Failure> {
+    if [a, b] == [Path::new("-"); 2] {
+        return Err(Failure::new(USAGE, "only one of the pictures can be standard input"));
+    }
+    let [(name_a, a), (name_b, b)] = [open(a)?, open(b)?];
+    SizeMismatch::of(a.size()?, b.size()?)?;
+    let mut remarks = Remarks::default();
+    let a = decode(args, &name_a, a, "A", &mut remarks)?;
+    let b = decode(args, &name_b, b, "B", &mut remarks)?;
+    Ok(Subject { names: [name_a, name_b], pictures: [a, b], remarks, explanation: None, not_finite: None })
+}
+
+/// A picture file, or standard input for `-`, and its name.
+fn open(path: &Path) -> Result<(String, Encoded), Failure> {
+    if path == Path::new("-") {
+        let name = "standard input";
+        return Ok((name.into(), Encoded::from_stream(name, std::io::stdin().lock())?));
+    }
+    Ok((path.display().to_string(), Encoded::open(path)?))
+}
+
+/// Decodes a picture, which reports call `role`.
+fn decode(args: &Args, name: &str, encoded: Encoded, role: &str, remarks: &mut Remarks) -> Result<Picture, Failure> {
+    let leniency = if args.lenient { Leniency::Lenient } else { Leniency::Strict };
+    let reading = encoded.decode(leniency)?;
     for warning in &reading.warnings {
-        errln!("trueray: {}: warning: {warning}", path.display());
+        if !args.json {
+            errln!("trueray: {}: warning: {warning}", visible(name));
+        }
+        remarks.warnings.push(format!("{role}: {warning}"));
+    }
+    if !reading.color_spaces.is_empty() {
+        let chunks = reading.color_spaces.join(", ");
+        remarks
+            .notes
+            .push(format!("{role} says how its samples are to be shown ({chunks}); they are compared as stored"));
     }
     Ok(reading.picture)
+}
+
+/// The heat map's scale with the pixels of each colour.
+fn heat_bands(a: &Picture, b: &Picture) -> Result<Vec<HeatBand>, Failure> {
+    let counts = Band::counts(a, b)?;
+    let bands = SCALE.iter().zip(counts);
+    Ok(bands
+        .map(|(&Band { from, color, legend }, pixels)| HeatBand { from_level: from, color, legend, pixels })
+        .collect())
 }
 
 fn save(path: &Path, picture: &Picture) -> Result<(), Failure> {

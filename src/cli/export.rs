@@ -47,7 +47,7 @@ fn run_export(args: &Args) -> Result<(), Failure> {
     let export =
         export(scene, &settings, &effects, args.to).map_err(|obstacles| refusal(args.to, &loaded, &obstacles))?;
     for warning in &export.warnings {
-        errln!("trueray: {}: warning: {warning}", loaded.name);
+        errln!("trueray: {}: warning: {warning}", crate::words::visible(&loaded.name));
     }
     if loaded.is_scene_file(&args.output) {
         return Err(Failure::new(super::failure::OUTPUT, "the export would overwrite its own scene file"));

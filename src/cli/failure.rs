@@ -6,6 +6,7 @@ use std::fmt;
 use crate::film::OutputError;
 use crate::gpu;
 use crate::misuse::Misuse;
+use crate::words::visible_lines;
 
 /// All is well.
 pub(super) const OK: u8 = 0;
@@ -41,7 +42,8 @@ impl Failure {
     /// Tells the user and returns the exit code.
     pub(super) fn report(&self) -> u8 {
         if !self.message.is_empty() {
-            errln!("trueray: {self}");
+            // Messages hold names that somebody else chose.
+            errln!("trueray: {}", visible_lines(&self.message));
         }
         self.code
     }

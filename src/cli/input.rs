@@ -1,13 +1,15 @@
 //! Reading scene files for the subcommands.
 
 use std::ffi::OsStr;
-use std::io::{IsTerminal, Read};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use super::color;
 use super::failure::{Failure, SCENE};
-use super::output::err;
-use crate::scene::{Parsed, Scene, parse};
+use super::output::{err, errln};
+use crate::scene::{Parsed, Scene, foreign_kind, parse};
+use crate::words::visible;
 
 /// A scene file that has been read, with errors or without.
 #[derive(Debug)]
@@ -27,13 +29,20 @@ impl Input {
         let start = Instant::now();
         let stdin = path == Path::new("-");
         let name = if stdin { "standard input".to_owned() } else { path.display().to_string() };
+        let refused = |why: String| Failure::new(SCENE, format!("cannot read the scene {}: {why}", visible(&name)));
+        if path.is_dir() {
+            return Err(refused("that is a folder".into()));
+        }
         let text = if stdin {
             let mut text = Vec::new();
             std::io::stdin().lock().read_to_end(&mut text).map(|_| text)
         } else {
             std::fs::read(path)
         };
-        let text = text.map_err(|error| Failure::new(SCENE, format!("cannot read the scene {name}: {error}")))?;
+        let text = text.map_err(|error| refused(error.to_string()))?;
+        if let Some(kind) = foreign_kind(&text) {
+            return Err(Failure::new(SCENE, format!("{}: this is {kind}, not a scene", visible(&name))));
+        }
         let parsed = parse(&name, &text);
         Ok(Self { name, parsed, parse_time: start.elapsed(), path: (!stdin).then(|| path.to_owned()) })
     }
@@ -50,8 +59,15 @@ impl Input {
     /// Prints the parser's report to standard error; warnings only unless `quiet`.
     pub(super) fn print_diagnostics(&self, quiet: bool) {
         if self.parsed.errors > 0 || !quiet {
-            err!("{}", self.parsed.report(std::io::stderr().is_terminal()));
+            err!("{}", self.parsed.report(color::is_on(&std::io::stderr())));
         }
+    }
+}
+
+/// Prints doubts about a scene to standard error.
+pub(super) fn print_doubts(name: &str, doubts: &[String]) {
+    for doubt in doubts {
+        errln!("trueray: {}: warning: {doubt}", visible(name));
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod bench;
 mod check;
+mod color;
 mod compare;
 mod devices;
 mod environment;
@@ -21,9 +22,13 @@ mod tune;
 #[cfg(feature = "view")]
 mod view;
 
+use std::path::Path;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+
+use self::failure::Failure;
+use crate::words;
 
 /// Renders scenes of spheres and ellipsoids on any Vulkan device and checks the picture against a CPU reference.
 ///
@@ -44,6 +49,10 @@ use clap::{Parser, Subcommand};
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
+    /// Whether messages are coloured
+    #[arg(long, value_enum, default_value_t, global = true, value_name = "WHEN")]
+    #[allow(dead_code, reason = "read before the rest, for messages about the arguments themselves")]
+    color: color::Color,
     #[command(flatten)]
     render: render::Args,
 }
@@ -74,9 +83,16 @@ enum Command {
 /// Runs the program with the arguments of the process.
 pub fn run() -> ExitCode {
     environment::prepare();
-    let cli = Cli::parse();
+    // What is wrong with the arguments is coloured as they ask for, too.
+    let (color, arguments) = color::of_arguments(std::env::args_os());
+    let matches = Cli::command().color(color.into()).get_matches_from(arguments);
+    let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+    color.choose();
     let code = match cli.command {
-        None => render::run(&cli.render),
+        None => match meant_command(cli.render.first_scene()) {
+            Some(failure) => failure.report(),
+            None => render::run(&cli.render),
+        },
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Compare(args)) => compare::run(&args),
         Some(Command::Check(args)) => check::run(&args),
@@ -89,4 +105,25 @@ pub fn run() -> ExitCode {
         Some(Command::Devices(args)) => devices::run(&args),
     };
     ExitCode::from(code)
+}
+
+/// How many letters a mistyped command may be off by.
+const SLIPS: usize = 2;
+
+/// The refusal of a first argument that is no file but resembles a command, such as `chek`.
+fn meant_command(first: Option<&Path>) -> Option<Failure> {
+    let word = first.filter(|path| !path.exists())?.to_str()?;
+    let cli = Cli::command();
+    let distance = |name: &str| words::slips(word.to_ascii_lowercase().as_bytes(), name.as_bytes());
+    let nearest =
+        cli.get_subcommands().map(|command| (distance(command.get_name()), command)).min_by_key(|pair| pair.0);
+    // Of a short word every other is near.
+    let (_, command) = nearest.filter(|&(slips, _)| slips <= SLIPS && 2 * slips < word.len())?;
+    let (word, name) = (words::visible(word), command.get_name());
+    let message = if word == name {
+        format!("options follow the command: write `trueray {name} …`")
+    } else {
+        format!("there is no file `{word}` and no command of that name; did you mean `{name}`?")
+    };
+    Some(Failure::new(failure::USAGE, message))
 }

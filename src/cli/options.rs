@@ -81,6 +81,7 @@ impl PictureOptions {
             settings.quantize = match quantize {
                 QuantizeArg::Truncate => Quantize::Truncate,
                 QuantizeArg::Round => Quantize::Round,
+                QuantizeArg::Overscale => Quantize::Overscale,
             };
         }
         if let Some(secondary) = self.secondary_epsilon {
@@ -129,6 +130,11 @@ impl PictureOptions {
             return Err(Failure::new(SCENE, format!("the scene cannot be rendered: {why}")));
         }
         Ok(effects)
+    }
+
+    /// Doubts about the picture of a scene as the file has it, before [`Self::resize`].
+    pub(super) fn doubts(&self, scene: &Scene, settings: &Settings) -> Vec<String> {
+        crate::doubts::doubts(scene, settings, self.res)
     }
 
     /// Applies `--res`.
@@ -216,8 +222,13 @@ enum SamplingArg {
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum QuantizeArg {
+    /// ⌊255·c⌋
     Truncate,
+    /// 255·c to nearest
     Round,
+    /// ⌊255.9·c⌋
+    #[value(name = "255.9")]
+    Overscale,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]

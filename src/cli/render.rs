@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use super::failure::{Failure, OK, OUTPUT, USAGE};
-use super::input::Loaded;
+use super::input::{Loaded, print_doubts};
 use super::options::{DeviceOptions, PictureOptions, device_name};
 use super::output::{err, errln};
 use super::progress::{Progress, Style};
@@ -20,6 +20,7 @@ use crate::sampling::Samples;
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::verify::Verify;
+use crate::words::{count, visible};
 
 /// Arguments of `trueray render`.
 #[derive(Debug, clap::Args)]
@@ -128,6 +129,11 @@ fn render_all(args: &Args) -> Result<u8, Failure> {
 }
 
 impl Args {
+    /// The first of the scene files.
+    pub(super) fn first_scene(&self) -> Option<&Path> {
+        self.scenes.first().map(PathBuf::as_path)
+    }
+
     /// What of this scene can be done before the device is open.
     fn ahead(&self, scene: &Scene, settings: &Settings) -> Option<Ahead> {
         if !self.device.uses_vulkan() {
@@ -149,6 +155,9 @@ fn render_one(
     [open_time, ready_time]: [Duration; 2],
 ) -> Result<Stats, Failure> {
     let start = Instant::now();
+    if !args.quiet {
+        print_doubts(&loaded.name, &args.picture.doubts(&loaded.scene, settings));
+    }
     args.picture.resize(&mut loaded.scene);
     let scene = &loaded.scene;
     let (target, format) = target(args, &loaded)?;
@@ -222,12 +231,14 @@ fn render_one(
     if cut > 0 && !args.quiet {
         let device = device_name(gpu);
         errln!(
-            "trueray: {}: {cut} pixels need more turns of a loop than {device} has; the CPU reference has calculated them",
-            loaded.name
+            "trueray: {}: more turns of a loop than {device} has, so calculated by the CPU reference: {}",
+            visible(&loaded.name),
+            count(cut, "pixel")
         );
     }
     if not_finite > 0 {
-        errln!("trueray: {}: {not_finite} pixels are not finite (NaN or infinity)", loaded.name);
+        let (name, pixels) = (visible(&loaded.name), count(not_finite, "pixel"));
+        errln!("trueray: {name}: not finite (NaN or infinity): {pixels}");
     }
     let stats = Stats {
         scene: loaded.name.clone(),
@@ -255,7 +266,7 @@ fn render_one(
     };
     if !args.quiet {
         let Stats { width, height, output, device, total_ms, .. } = &stats;
-        errln!("{output}: {width} × {height} on {device} in {total_ms:.0} ms");
+        errln!("{}: {width} × {height} on {device} in {total_ms:.0} ms", visible(output));
     }
     if args.stats || args.verbose {
         err!("{}", stats.table());
@@ -295,7 +306,7 @@ pub(super) fn explanation(name: &str, effects: &Effects) -> String {
         format!("  {:<12} {:<4} {}\n", row.effect, if row.on { "on" } else { "off" }, row.reason)
     };
     let rows: String = effects.rows.iter().map(row).collect();
-    format!("{name}: effects (depth {})\n{rows}", effects.depth)
+    format!("{}: effects (depth {})\n{rows}", visible(name), effects.depth)
 }
 
 /// What the scene demands and which tier that takes.
@@ -309,11 +320,8 @@ fn ms(duration: Duration) -> f64 {
 }
 
 fn write_stats(path: &Path, stats: &[Stats]) -> Result<(), Failure> {
-    let mut json = match stats {
-        [one] => serde_json::to_string_pretty(one),
-        all => serde_json::to_string_pretty(all),
-    }
-    .map_err(|error| Failure::new(OUTPUT, error.to_string()))?;
+    let document = std::collections::BTreeMap::from([("pictures", stats)]);
+    let mut json = serde_json::to_string_pretty(&document).map_err(|error| Failure::new(OUTPUT, error.to_string()))?;
     json.push('\n');
     let written =
         if path == Path::new("-") { std::io::stderr().write_all(json.as_bytes()) } else { std::fs::write(path, json) };

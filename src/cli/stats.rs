@@ -9,6 +9,7 @@ use crate::engine::{Rays, Times};
 use crate::precision::Selection;
 use crate::sampling::{Density, Fill};
 use crate::settings::Settings;
+use crate::words::count;
 
 /// What was sampled of a picture, where that is not everything.
 #[derive(Debug, Serialize)]
@@ -83,7 +84,7 @@ impl Stats {
             let _ = writeln!(text, "  {name:<18} {value}");
         };
         row("picture", format!("{} × {}", self.width, self.height));
-        row("scene", format!("{} spheres, {} lights", self.spheres, self.lights));
+        row("scene", format!("{}, {}", count(self.spheres as u64, "sphere"), count(self.lights as u64, "light")));
         row("device", self.device.clone());
         if let Some(tuning) = &self.tuning {
             row("tuning", tuning.clone());

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::value as rgb;
 use crate::cpu::{Decision, Finding, Judge, Reference};
 use crate::film::Picture;
 use crate::precision::Tier;
@@ -94,7 +95,7 @@ impl Explanation {
             let _ = writeln!(text, "  {:>8}  of them with more paths than are tried", self.undecided);
         }
         for UnexplainedPixel { x, y, value, reference } in &self.listed {
-            let _ = writeln!(text, "            x {x}, y {y}: {value:?}, reference {reference:?}");
+            let _ = writeln!(text, "            x {x}, y {y}: {}, reference {}", rgb(*value), rgb(*reference));
         }
         text
     }

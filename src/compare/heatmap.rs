@@ -16,17 +16,37 @@ pub struct Band {
 
 /// The heat map's scale, from the smallest differences to the greatest.
 ///
-/// Brightness and hue both change from band to band, and no colour is among the dark greys of pixels that are the same.
+/// Entries of inferno, a colour map of matplotlib (N. J. Smith, S. van der Walt, CC0): its lightness grows in equal steps,
+/// which every kind of colour vision sees. The greys of pixels that are the same are darker than all of it.
 pub const SCALE: [Band; 5] = [
-    Band { from: 1, color: [48, 112, 255], legend: "1 level: blue" },
-    Band { from: 2, color: [0, 224, 208], legend: "2 levels: turquoise" },
-    Band { from: 3, color: [255, 224, 0], legend: "3 to 10 levels: yellow" },
-    Band { from: 11, color: [255, 80, 0], legend: "11 to 50 levels: orange" },
-    Band { from: 51, color: [255, 0, 255], legend: "51 levels and more: magenta" },
+    Band { from: 1, color: [120, 28, 109], legend: "1 level: purple" },
+    Band { from: 2, color: [188, 55, 84], legend: "2 levels: red" },
+    Band { from: 3, color: [242, 116, 28], legend: "3 to 10 levels: orange" },
+    Band { from: 11, color: [252, 178, 22], legend: "11 to 50 levels: amber" },
+    Band { from: 51, color: [252, 255, 164], legend: "51 levels and more: pale yellow" },
 ];
 
 /// The brightest grey of a pixel that is the same in both pictures.
-const BRIGHTEST_SAME: u32 = 80;
+const BRIGHTEST_SAME: u32 = 48;
+
+impl Band {
+    /// How many pixels of each band of [`SCALE`] two pictures have.
+    ///
+    /// # Errors
+    /// Pictures of different sizes.
+    pub fn counts(a: &Picture, b: &Picture) -> Result<[u64; SCALE.len()], SizeMismatch> {
+        SizeMismatch::check(a, b)?;
+        let mut counts = [0; SCALE.len()];
+        let bands = a.pixels().iter().zip(b.pixels()).filter(|(a, b)| a != b).filter_map(|(&a, &b)| band(level(a, b)));
+        bands.for_each(|band| counts[band] += 1);
+        Ok(counts)
+    }
+}
+
+/// The place in [`SCALE`] of a level difference; `None` for no difference.
+fn band(level: u8) -> Option<usize> {
+    SCALE.iter().rposition(|band| band.from <= level)
+}
 
 /// The columns between the pictures of [`three_wide`]: black and white, to be seen beside any background.
 const GAP: [[u8; 3]; 4] = [[255; 3], [0; 3], [0; 3], [255; 3]];
@@ -59,9 +79,8 @@ pub fn three_wide(a: &Picture, b: &Picture) -> Result<Picture, SizeMismatch> {
 }
 
 fn heat(a: [u8; 3], b: [u8; 3]) -> [u8; 3] {
-    let level = level(a, b);
-    match SCALE.iter().rev().find(|band| band.from <= level) {
-        Some(band) => band.color,
+    match band(level(a, b)) {
+        Some(band) => SCALE[band].color,
         None => [dark_grey(a); 3],
     }
 }

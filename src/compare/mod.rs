@@ -11,6 +11,7 @@ use std::fmt;
 use serde::Serialize;
 
 use crate::film::Picture;
+use crate::words::count;
 
 pub use explain::{Explanation, UnexplainedPixel};
 pub use heatmap::{Band, SCALE, heatmap, three_wide};
@@ -27,8 +28,15 @@ pub struct SizeMismatch {
 
 impl SizeMismatch {
     fn check(a: &Picture, b: &Picture) -> Result<(), Self> {
-        let mismatch = Self { a: (a.width(), a.height()), b: (b.width(), b.height()) };
-        if mismatch.a == mismatch.b { Ok(()) } else { Err(mismatch) }
+        Self::of((a.width(), a.height()), (b.width(), b.height()))
+    }
+
+    /// Whether two sizes are the same; an error if not.
+    ///
+    /// # Errors
+    /// Sizes that differ.
+    pub fn of(a: (u32, u32), b: (u32, u32)) -> Result<(), Self> {
+        if a == b { Ok(()) } else { Err(Self { a, b }) }
     }
 }
 
@@ -133,6 +141,11 @@ impl Bounds {
     }
 }
 
+/// A pixel's value as reports have it.
+fn value([red, green, blue]: [u8; 3]) -> String {
+    format!("({red}, {green}, {blue})")
+}
+
 /// The absolute difference in each channel.
 fn channel_differences(a: [u8; 3], b: [u8; 3]) -> [u8; 3] {
     std::array::from_fn(|channel| a[channel].abs_diff(b[channel]))
@@ -204,7 +217,7 @@ impl Difference {
         let mut lines = vec![
             format!("A                 {name_a}"),
             format!("B                 {name_b}"),
-            format!("size              {}x{}, {} pixels", self.width, self.height, self.pixels),
+            format!("size              {}x{}, {}", self.width, self.height, count(self.pixels, "pixel")),
         ];
         let digits = self.pixels.to_string().len();
         for (threshold, count) in self.differing.by_threshold() {
@@ -221,12 +234,10 @@ impl Difference {
 
     fn details(&self, worst: WorstPixel, bounds: Bounds) -> [String; 4] {
         let [red, green, blue] = self.max_per_channel;
-        let value = |[red, green, blue]: [u8; 3]| format!("({red}, {green}, {blue})");
         let WorstPixel { x, y, level, a, b } = worst;
-        let plural = if level == 1 { "" } else { "s" };
         let Bounds { x_min, y_min, x_max, y_max } = bounds;
         [
-            format!("worst pixel       x {x}, y {y}: {level} level{plural}, A {}, B {}", value(a), value(b)),
+            format!("worst pixel       x {x}, y {y}: {}, A {}, B {}", count(level, "level"), value(a), value(b)),
             format!("worst by channel  red {red}, green {green}, blue {blue}"),
             format!("mean              {:.6} levels a sample", self.mean),
             format!("where             x {x_min} to {x_max}, y {y_min} to {y_max}"),

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::Difference;
 use crate::film::Picture;
+use crate::words::count;
 
 /// A change of the first picture that makes it resemble the second.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -41,6 +42,10 @@ pub enum ResemblanceKind {
     OneLevelBrighter,
     /// B is darker by one level wherever the two differ, in many places.
     OneLevelDarker,
+    /// B is brighter by one level in the more places the brighter they are, as ⌊255.9·c⌋ is than ⌊255·c⌋.
+    OverscaledBrighter,
+    /// B is darker by one level in the more places the brighter they are.
+    OverscaledDarker,
 }
 
 impl fmt::Display for ResemblanceKind {
@@ -55,6 +60,12 @@ impl fmt::Display for ResemblanceKind {
             Self::RedBlueSwapped => "A with red and blue exchanged (BGR written as RGB?)",
             Self::OneLevelBrighter => "A, in parts one level brighter (A truncated to 8 bits, B rounded?)",
             Self::OneLevelDarker => "A, in parts one level darker (A rounded to 8 bits, B truncated?)",
+            Self::OverscaledBrighter => {
+                "A, the more one level brighter the brighter it is (A × 255, B × 255.9, both truncated?)"
+            }
+            Self::OverscaledDarker => {
+                "A, the more one level darker the brighter it is (A × 255.9, B × 255, both truncated?)"
+            }
         })
     }
 }
@@ -63,8 +74,11 @@ impl fmt::Display for Resemblance {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Self { kind, compared, differing } = self;
         match kind {
-            ResemblanceKind::OneLevelBrighter | ResemblanceKind::OneLevelDarker => write!(f, "B looks like {kind}"),
-            _ => write!(f, "B looks like {kind}: {differing} of {compared} pixels differ then"),
+            ResemblanceKind::OneLevelBrighter
+            | ResemblanceKind::OneLevelDarker
+            | ResemblanceKind::OverscaledBrighter
+            | ResemblanceKind::OverscaledDarker => write!(f, "B looks like {kind}"),
+            _ => write!(f, "B looks like {kind}: {differing} of {} differ then", count(*compared, "pixel")),
         }
     }
 }
@@ -196,7 +210,7 @@ fn turned(a: &Picture, b: &Picture, differing: u64) -> impl Iterator<Item = Rese
     found.into_iter().flatten()
 }
 
-/// One picture rounded, the other truncated: single levels, all in one direction, in at least a twentieth of the picture.
+/// One picture quantized in another way: single levels, all in one direction, in at least a twentieth of the picture.
 fn one_sided(a: &Picture, b: &Picture, difference: &Difference) -> Option<Resemblance> {
     let Difference { pixels, differing, max_level, .. } = *difference;
     if max_level != 1 || differing.over_0 < pixels.div_ceil(20) {
@@ -204,9 +218,37 @@ fn one_sided(a: &Picture, b: &Picture, difference: &Difference) -> Option<Resemb
     }
     let mut orders = a.rgb().iter().zip(b.rgb()).map(|(a, b)| b.cmp(a)).filter(|order| order.is_ne());
     let first = orders.next()?;
-    let kind = match first {
-        Ordering::Greater => ResemblanceKind::OneLevelBrighter,
-        _ => ResemblanceKind::OneLevelDarker,
+    if !orders.all(|order| order == first) {
+        return None;
+    }
+    let (darker, brighter) = if first == Ordering::Greater { (a, b) } else { (b, a) };
+    let kind = match (first, is_overscaled(darker, brighter)) {
+        (Ordering::Greater, false) => ResemblanceKind::OneLevelBrighter,
+        (Ordering::Greater, true) => ResemblanceKind::OverscaledBrighter,
+        (_, false) => ResemblanceKind::OneLevelDarker,
+        (_, true) => ResemblanceKind::OverscaledDarker,
     };
-    orders.all(|order| order == first).then_some(Resemblance { kind, compared: pixels, differing: differing.over_0 })
+    Some(Resemblance { kind, compared: pixels, differing: differing.over_0 })
+}
+
+/// So few samples of a level say nothing of how often it differs.
+const LEAST_SAMPLES: u32 = 8;
+
+/// Whether the brighter of two pictures looks like ⌊255.9·c⌋ beside ⌊255·c⌋ rather than like 255·c rounded: at level v, 0.9·v/255 of
+/// its samples are greater then, not one half. All levels weigh the same, so that a flat background is only one voice.
+fn is_overscaled(darker: &Picture, brighter: &Picture) -> bool {
+    let mut counts = [[0_u32; 2]; 256];
+    for (&dark, &bright) in darker.rgb().iter().zip(brighter.rgb()) {
+        counts[dark as usize][usize::from(dark != bright)] += 1;
+    }
+    // Black and white are often clamped, and white cannot be greater.
+    let levels = (1..255).filter(|&level: &usize| counts[level].iter().sum::<u32>() >= LEAST_SAMPLES);
+    let (mut rounded, mut overscaled) = (0.0, 0.0);
+    for level in levels {
+        let [same, greater] = counts[level].map(f64::from);
+        let share = greater / (same + greater);
+        rounded += (share - 0.5).powi(2);
+        overscaled += (share - 0.9 * level as f64 / 255.0).powi(2);
+    }
+    overscaled < rounded
 }

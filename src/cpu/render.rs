@@ -153,7 +153,7 @@ impl<T: Real> Reference<T> {
 
 /// The 8-bit RGB of an unclamped colour, calculated in its scalar; NaN becomes 0. Read it beside `shaders/quantize.wgsl`.
 pub(super) fn levels<T: Real>(quantize: Quantize, color: Vec3<T>) -> [u8; 3] {
-    let (scale, bias) = (T::from_f64(255.0), T::from_f64(quantize.bias()));
+    let (scale, bias) = (T::from_f64(quantize.scale()), T::from_f64(quantize.bias()));
     let level = |c: T| {
         let low = if c > T::ZERO { c } else { T::ZERO };
         let clamped = if low > T::ONE { T::ONE } else { low };

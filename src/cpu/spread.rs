@@ -191,8 +191,8 @@ impl Shade {
             let each = |pick: fn(u8, u8) -> u8| [0, 1, 2].map(|c| all.iter().fold(all[0][c], |a, b| pick(a, b[c])));
             return [each(u8::min), each(u8::max)];
         }
-        // 255·c + bias is rounded twice.
-        let rounding = |color: DVec3| 2.0 * roundoff.shading * (color.abs() + quantize.bias() / 255.0);
+        // The product and the sum are rounded.
+        let rounding = |color: DVec3| 2.0 * roundoff.shading * (color.abs() + quantize.bias() / quantize.scale());
         [quantize.levels(self.low - rounding(self.low)), quantize.levels(self.high + rounding(self.high))]
     }
 }

@@ -87,7 +87,7 @@ impl Found<'_> {
         let Scene { spheres, sphere_names, .. } = self.scene;
         let mut indices = (0..spheres.len()).filter(|&index| property(&spheres[index]));
         let first = indices.next()?;
-        let name = sphere_names.get(first);
+        let name = sphere_names.shown(first);
         Some(match indices.count() {
             0 => format!("sphere '{name}'"),
             more => format!("sphere '{name}' and {more} more"),
@@ -120,6 +120,7 @@ impl Found<'_> {
             let (verb, word) = match own {
                 Quantize::Truncate => ("truncates", "truncate"),
                 Quantize::Round => ("rounds", "round"),
+                Quantize::Overscale => ("scales by 255.9 and truncates", "255.9"),
             };
             self.warnings.push(format!("{} {verb} levels: compare with --quantize {word}", self.peer));
         }
@@ -133,7 +134,7 @@ impl Found<'_> {
         }
         let shapes = shape_indices(&self.scene.spheres, true).unwrap_or_default();
         if let Some(twin) = shapes.iter().enumerate().position(|(index, &first)| index != first as usize) {
-            let name = self.scene.sphere_names.get(twin);
+            let name = self.scene.sphere_names.shown(twin);
             self.warnings.push(format!(
                 "sphere '{name}' has the place and size of another one: here the first in the file is seen, {} may choose the other",
                 self.peer

@@ -4,6 +4,7 @@
 //! [`PictureWriter`] streams, so a picture never has to be in memory as a whole to be written;
 //! [`read_picture`] recognises a file by its contents and is strict unless told otherwise.
 
+mod png;
 mod ppm;
 mod problem;
 mod read;
@@ -14,7 +15,7 @@ use std::path::Path;
 use std::str::FromStr;
 
 pub use problem::{Place, Problem, ReadError, SamplePosition, Warning};
-pub use read::{Leniency, Reading, decode, read_picture};
+pub use read::{Encoded, Leniency, Reading, decode, read_picture};
 pub use write::{OutputError, PictureWriter, Target, encode_png, save_text};
 
 /// The greatest width and the greatest height of a [`Picture`], in pixels.

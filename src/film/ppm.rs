@@ -1,14 +1,21 @@
 //! Reading PPM, as binary (P6) and as text (P3).
 //!
-//! The rules are Netpbm's: a comment runs from `#` to the end of its line and may stand anywhere before a P6 raster and
-//! anywhere in P3; lines may be longer than the 70 characters that writers should keep to.
+//! The rules are Netpbm's: a comment runs from `#` to the line feed or carriage return that ends its line and stands for
+//! that one; it may be anywhere before a P6 raster, also right after the maximum, and anywhere in P3. Lines may be longer
+//! than the 70 characters that writers should keep to.
 
 use super::problem::{Place, Problem, SamplePosition, Warning};
 use super::read::{Leniency, Reading};
 use super::{Picture, sample_count};
+use crate::words::count;
 
 /// The most samples that a lenient reading makes up: a header alone must not decide how much memory is used.
 const MAX_MADE_UP: usize = 1 << 26;
+
+/// Width and height as the header has them.
+pub(super) fn size(bytes: &[u8]) -> Result<(u32, u32), Problem> {
+    Header::read(&mut Scanner { bytes, at: 0, line: 1 }).map(|header| (header.width, header.height))
+}
 
 pub(super) fn decode(bytes: Vec<u8>, leniency: Leniency) -> Result<Reading, Problem> {
     let mut scanner = Scanner { bytes: &bytes, at: 0, line: 1 };
@@ -25,7 +32,8 @@ pub(super) fn decode(bytes: Vec<u8>, leniency: Leniency) -> Result<Reading, Prob
         binary_samples(bytes, raster, &mut tally)?
     };
     let warnings = tally.into_warnings();
-    Ok(Reading { picture: Picture::assemble(header.width, header.height, rgb), warnings })
+    let picture = Picture::assemble(header.width, header.height, rgb);
+    Ok(Reading { picture, warnings, color_spaces: Vec::new() })
 }
 
 struct Header {
@@ -51,12 +59,11 @@ impl Header {
             return Err(header_error(line, format!("the maximum is {maximum}; it must be 1 to 65535")));
         }
         if !plain {
-            // Exactly one byte of white space: the next may already be a sample.
-            match scanner.peek() {
-                Some(byte) if is_space(byte) => scanner.at += 1,
-                Some(_) => return Err(header_error(line, "white space must follow the maximum".into())),
-                None => {}
+            // Exactly one byte of white space, be it that of a comment: the next may already be a sample.
+            if scanner.peek() == Some(b'#') {
+                scanner.skip_comment();
             }
+            scanner.at = (scanner.at + 1).min(scanner.bytes.len());
         }
         Ok(Self { plain, width, height, maximum, samples })
     }
@@ -111,9 +118,9 @@ impl<'a> Scanner<'a> {
         while let Some(byte) = self.peek() {
             match byte {
                 b'\n' => self.line += 1,
+                b'\r' if self.bytes.get(self.at + 1) != Some(&b'\n') => self.line += 1,
                 b'#' => {
-                    let rest = &self.bytes[self.at..];
-                    self.at += rest.iter().position(|&byte| byte == b'\n').unwrap_or(rest.len());
+                    self.skip_comment();
                     continue;
                 }
                 _ if is_space(byte) => {}
@@ -121,6 +128,12 @@ impl<'a> Scanner<'a> {
             }
             self.at += 1;
         }
+    }
+
+    /// From `#` to before the end of its line.
+    fn skip_comment(&mut self) {
+        let rest = &self.bytes[self.at..];
+        self.at += memchr::memchr2(b'\n', b'\r', rest).unwrap_or(rest.len());
     }
 
     fn header_number(&mut self, name: &str) -> Result<(u32, u64), Problem> {
@@ -274,7 +287,7 @@ fn binary_samples(mut bytes: Vec<u8>, mut raster: usize, tally: &mut Tally) -> R
     let end = raster.saturating_add(size);
     if length > end {
         let excess = length - end;
-        tally.trailing(Place::Byte(end as u64), excess, format!("data ({excess} bytes)"))?;
+        tally.trailing(Place::Byte(end as u64), excess, format!("data ({})", count(excess as u64, "byte")))?;
         bytes.truncate(end);
     }
     if header.maximum == 255 {

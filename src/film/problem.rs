@@ -4,6 +4,8 @@ use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::words::{count, visible_path};
+
 /// A picture file that could not be read. Its text names the file, the place in it and what is wrong there.
 #[derive(Debug)]
 pub struct ReadError {
@@ -25,7 +27,7 @@ impl ReadError {
 
 impl fmt::Display for ReadError {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "{}: {}", self.path.display(), self.problem)
+        write!(f, "{}: {}", visible_path(&self.path), self.problem)
     }
 }
 
@@ -135,8 +137,13 @@ pub enum Problem {
     },
     /// The header ends in CR LF where one byte is allowed, so that the samples are one byte too many.
     CrLfHeader,
-    /// A PNG file whose pixels are complete, but which is cut off after them or has data after its end.
-    PngEnd,
+    /// A PNG file whose pixels are complete, but which is cut off before its end.
+    PngCutOff,
+    /// Something follows the end of a PNG file.
+    PngTrailing {
+        /// How many bytes.
+        bytes: u64,
+    },
     /// A valid picture that does not fit into 8-bit RGB without a loss; the text says why.
     Lossy(String),
     /// The header promises more samples than the file can hold.
@@ -144,6 +151,22 @@ pub enum Problem {
         /// Pixels in a row, as the header says.
         width: u32,
         /// Rows, as the header says.
+        height: u32,
+    },
+    /// More pixels than are decoded at all.
+    TooManyPixels {
+        /// Pixels in a row, as the header says.
+        width: u32,
+        /// Rows, as the header says.
+        height: u32,
+        /// The most that are.
+        most: u64,
+    },
+    /// There is no memory for so many pixels.
+    OutOfMemory {
+        /// Pixels in a row.
+        width: u32,
+        /// Rows.
         height: u32,
     },
     /// A damaged PNG file; the text is the decoder's.
@@ -158,13 +181,16 @@ impl Problem {
             | Self::Truncated { .. }
             | Self::Trailing { .. }
             | Self::CrLfHeader
-            | Self::PngEnd
+            | Self::PngCutOff
+            | Self::PngTrailing { .. }
             | Self::Lossy(_) => true,
             Self::Io(_)
             | Self::Unrecognised(_)
             | Self::Header { .. }
             | Self::NotANumber { .. }
             | Self::TooLarge { .. }
+            | Self::TooManyPixels { .. }
+            | Self::OutOfMemory { .. }
             | Self::Png(_) => false,
         }
     }
@@ -193,7 +219,12 @@ impl fmt::Display for Problem {
             Self::CrLfHeader => {
                 f.write_str("the header ends in CR LF where one byte is allowed (written in text mode?)")
             }
-            Self::PngEnd => f.write_str("the PNG does not end with its IEND chunk (cut off, or data after it)"),
+            Self::PngCutOff => f.write_str("the PNG is cut off after its pixels: it does not end with its IEND chunk"),
+            Self::PngTrailing { bytes } => write!(f, "data after the end of the PNG: {}", count(*bytes, "byte")),
+            Self::TooManyPixels { width, height, most } => {
+                write!(f, "the header promises {width}x{height} pixels; at most {most} are read")
+            }
+            Self::OutOfMemory { width, height } => write!(f, "there is no memory for {width}x{height} pixels"),
             Self::TooLarge { width, height } => {
                 write!(f, "the header promises {width}x{height} pixels, more than the file can hold")
             }
@@ -232,8 +263,13 @@ pub enum Warning {
     },
     /// The header ended in CR LF where one byte is allowed; the LF was skipped.
     CrLfHeader,
-    /// A PNG file is cut off after its pixels, or has data after its end.
-    PngEnd,
+    /// A PNG file is cut off after its pixels.
+    PngCutOff,
+    /// Data after the end of a PNG file were ignored.
+    PngTrailing {
+        /// How many bytes.
+        bytes: u64,
+    },
     /// Samples were scaled, with rounding, from 0…maximum to 0…255.
     Scaled {
         /// The greatest value in the file's range.
@@ -253,9 +289,12 @@ impl fmt::Display for Warning {
                 write!(f, "samples out of range, clamped: {count}; the first at {place}: {sample} is {found}")
             }
             Self::Missing { count, first } => write!(f, "missing samples, taken as 0: {count}, from {first} on"),
-            Self::Trailing { bytes } => write!(f, "data after the last sample, ignored: {bytes} bytes"),
+            Self::Trailing { bytes } => write!(f, "data after the last sample, ignored: {}", count(*bytes, "byte")),
             Self::CrLfHeader => f.write_str("the header ends in CR LF; the LF was taken as part of it"),
-            Self::PngEnd => f.write_str("the PNG does not end with its IEND chunk; its pixels are complete"),
+            Self::PngCutOff => f.write_str("the PNG does not end with its IEND chunk; its pixels are complete"),
+            Self::PngTrailing { bytes } => {
+                write!(f, "data after the end of the PNG, ignored: {}", count(*bytes, "byte"))
+            }
             Self::Scaled { maximum } => write!(f, "samples were scaled from 0..{maximum} to 0..255"),
             Self::AlphaDropped { pixels } => write!(f, "pixels not opaque, transparency ignored: {pixels}"),
         }

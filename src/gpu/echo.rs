@@ -14,7 +14,7 @@ use crate::scene::Scene;
 use crate::settings::Settings;
 
 /// Values before the spheres, of each sphere, of each light, and after the lights.
-const COUNTS: [usize; 4] = [30, 19, 6, 6];
+const COUNTS: [usize; 4] = [31, 19, 6, 6];
 
 /// Packs `scene` and lets the device write back every field in the order of `shaders/echo.wgsl`: numbers as the bits of
 /// their nearest `f32`.

@@ -35,6 +35,7 @@ pub struct ParamValues {
     pub primary_t_min: f64,
     pub shadow_t_min: f64,
     pub reflection_t_min: f64,
+    pub quantize_scale: f64,
     pub quantize_bias: f64,
     pub window_rows: u32,
     pub lists: ListValues,
@@ -116,7 +117,7 @@ macro_rules! layout {
                     shadow_t_min: $real,
                     /// A reflection ray's hit counts beyond this.
                     reflection_t_min: $real,
-                    /// Added to 255·c before the fraction is cut off.
+                    /// Added to a colour's level before the fraction is cut off.
                     quantize_bias: $real,
                     /// What a blocker must be farther from the light than a point to end a light's list.
                     light_slack: $real,
@@ -148,6 +149,8 @@ macro_rules! layout {
                     grid_entries: u32,
                     /// A primary ray with a discriminant below this, in radii squared, may touch a sphere or not.
                     tangent_margin: f32,
+                    /// What a colour is multiplied by to be a level.
+                    quantize_scale: $real,
                     /// To the size that WGSL gives the struct.
                     padding1: [u32; $params1],
                 }
@@ -261,6 +264,7 @@ macro_rules! layout {
                         primary_t_min: Self::real(values.primary_t_min),
                         shadow_t_min: Self::real(values.shadow_t_min),
                         reflection_t_min: Self::real(values.reflection_t_min),
+                        quantize_scale: Self::real(values.quantize_scale),
                         quantize_bias: Self::real(values.quantize_bias),
                         light_slack: Self::real(values.lists.light_slack),
                         window_rows: values.window_rows,
@@ -338,11 +342,11 @@ macro_rules! layout {
 
 layout!(
     /// The structs of the `f32` kernels.
-    single, f32, params 0 2, shape 0, material 1, light 1, face 1
+    single, f32, params 0 1, shape 0, material 1, light 1, face 1
 );
 layout!(
     /// The structs of the `f64` kernels.
-    double, f64, params 1 6, shape 1, material 2, light 2, face 2
+    double, f64, params 1 4, shape 1, material 2, light 2, face 2
 );
 
 const _: () = {

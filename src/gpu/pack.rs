@@ -192,6 +192,7 @@ fn pack<'a, L: Layout + 'a>(
         primary_t_min: if on(Effect::Shells) { camera.t_min() } else { 0.0 },
         shadow_t_min: settings.secondary.shadow,
         reflection_t_min: settings.secondary.reflection,
+        quantize_scale: settings.quantize.scale(),
         quantize_bias: settings.quantize.bias(),
         window_rows: columns,
         lists: list_values(accel, &bases),

@@ -407,6 +407,7 @@ fn params<L: Layout>() -> Vec<u8> {
         primary_t_min: NEAR_T_MIN,
         shadow_t_min: 0.0,
         reflection_t_min: 0.0,
+        quantize_scale: 255.0,
         quantize_bias: 0.0,
         window_rows: 0,
         lists: ListValues::default(),

@@ -10,6 +10,8 @@ use codespan_reporting::diagnostic as codespan;
 use codespan_reporting::files::{Error as FilesError, Files};
 use codespan_reporting::term::{self, termcolor::Buffer};
 
+use crate::words::{push_visible, visible};
+
 /// So many errors are kept.
 const ERRORS_KEPT: usize = 50;
 /// So many warnings are kept of each [`Topic`].
@@ -40,7 +42,7 @@ impl fmt::Display for Severity {
 
 /// One error or warning, with the place in the file that it is about.
 ///
-/// All texts are safe to print: bytes that are not UTF-8 and characters that a terminal would obey or hide are replaced.
+/// All texts are safe to print: bytes that are not UTF-8 and characters that a terminal would obey or hide are escaped.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Diagnostic {
     /// Error or warning.
@@ -155,7 +157,7 @@ impl Topic {
         match self {
             Self::Color => "warnings about colours outside 0 to 1 are",
             Self::Coefficient => "warnings about coefficients outside 0 to 1 are",
-            Self::Intensity => "warnings about negative intensities are",
+            Self::Intensity => "warnings about negative or huge intensities are",
             Self::Tiny => "warnings about numbers too small for full precision are",
             Self::Window => "warnings about the window are",
         }
@@ -262,7 +264,7 @@ impl From<Severity> for codespan::Severity {
 pub(super) fn render(file: &str, diagnostics: &[Diagnostic], omitted: &[Omitted], color: bool) -> String {
     let mut buffer = if color { Buffer::ansi() } else { Buffer::no_color() };
     let config = term::Config::default();
-    let file = visible(file.as_bytes());
+    let file = visible(file);
     for diagnostic in diagnostics {
         let snippet = Snippet::new(&file, diagnostic);
         emit(&mut buffer, &config, &snippet, &diagnostic.to_codespan());
@@ -409,41 +411,10 @@ fn column(place: Place<'_>) -> usize {
 /// A token for use in a message: safe to print, cut if it is long.
 pub(super) fn shown(token: &[u8]) -> String {
     // No character takes more than 4 bytes; one more than are shown tells whether something is cut.
-    let text = visible(&token[..token.len().min(4 * (TOKEN_SHOWN + 1))]);
+    let mut text = String::new();
+    push_visible(&mut text, &token[..token.len().min(4 * (TOKEN_SHOWN + 1))]);
     match text.char_indices().nth(TOKEN_SHOWN) {
         Some((cut, _)) => format!("{}…", &text[..cut]),
         None => text,
-    }
-}
-
-fn visible(bytes: &[u8]) -> String {
-    let mut text = String::new();
-    push_visible(&mut text, bytes);
-    text
-}
-
-/// Appends text character by character; each sequence that is not UTF-8 becomes one replacement character.
-fn push_visible(text: &mut String, bytes: &[u8]) {
-    for chunk in bytes.utf8_chunks() {
-        text.extend(chunk.valid().chars().map(visible_char));
-        if !chunk.invalid().is_empty() {
-            text.push(char::REPLACEMENT_CHARACTER);
-        }
-    }
-}
-
-/// A stand-in for characters that a terminal obeys or hides: control pictures, else the replacement character.
-fn visible_char(c: char) -> char {
-    match c {
-        '\t' => c,
-        '\0'..='\u{1F}' => char::from_u32(0x2400 + c as u32).unwrap_or(char::REPLACEMENT_CHARACTER),
-        '\u{7F}' => '␡',
-        // The second half are the invisible marks and those that reverse the direction of writing.
-        '\u{80}'..='\u{9F}'
-        | '\u{200B}'..='\u{200F}'
-        | '\u{2028}'..='\u{202E}'
-        | '\u{2060}'..='\u{206F}'
-        | '\u{FEFF}' => char::REPLACEMENT_CHARACTER,
-        _ => c,
     }
 }

@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use crate::words::visible;
+
 /// The greatest accepted `RES` value per axis: pixel numbers up to here are exact in `f32`.
 pub const MAX_RESOLUTION: u32 = 1 << 24;
 
@@ -100,6 +102,11 @@ impl Names {
         };
         let start = if index == 0 { 0 } else { self.ends[index - 1] };
         &self.text[start as usize..end as usize]
+    }
+
+    /// The label at `index`, safe to print: it may hold whatever the file has.
+    pub fn shown(&self, index: usize) -> String {
+        visible(self.get(index))
     }
 
     /// How many labels there are.

@@ -13,6 +13,7 @@ use self::keyword::{Field, Guess, Keyword, MAX_FIELDS, Rule};
 use self::number::{Fault, is_tiny, parse_number};
 use super::diagnostics::{Collector, Detail, Diagnostic, Line, Omitted, Place, Span, Topic, render, shown};
 use super::{Light, MAX_RESOLUTION, Names, Scene, Sphere, Window};
+use crate::words::{count, is_hidden};
 
 /// What a scene file was found to be.
 #[derive(Debug, Clone)]
@@ -139,6 +140,10 @@ struct Parser<'a> {
     lights: Vec<Light>,
     light_names: Names,
     output: Option<String>,
+    /// What follows the line that is being read.
+    rest: &'a [u8],
+    /// The number of the line that the next one with a statement was found to continue.
+    broken: Option<usize>,
     collector: Collector,
 }
 
@@ -154,6 +159,7 @@ impl<'a> Parser<'a> {
             let (bytes, taken) = first_line(rest);
             rest = &rest[taken..];
             line = Line { number, bytes };
+            self.rest = rest;
             tokens.split(bytes);
             self.statement(line, &tokens);
         }
@@ -165,8 +171,9 @@ impl<'a> Parser<'a> {
         let Some(&first) = tokens.kept().first() else {
             return;
         };
+        let broken = self.broken.take();
         let Some(keyword) = Keyword::from_token(line.token(first)) else {
-            return self.refuse_keyword(line.place(first));
+            return self.refuse_keyword(line.place(first), broken);
         };
         let values = self.fields(keyword, line, tokens);
         match keyword {
@@ -201,8 +208,11 @@ impl<'a> Parser<'a> {
             }
         }
         if !complete {
-            self.collector
-                .error(wrong_count_place(keyword, line, tokens), || wrong_count(keyword, line, tokens, &values));
+            self.broken = is_continued(keyword, tokens, self.rest).then_some(line.number);
+            let broken = self.broken.is_some();
+            self.collector.error(wrong_count_place(keyword, line, tokens), || {
+                wrong_count(keyword, line, tokens, &values, broken)
+            });
         }
         valid.then_some(values)
     }
@@ -243,7 +253,7 @@ impl<'a> Parser<'a> {
                 return false;
             }
             Rule::Color | Rule::Coefficient => (0.0..=1.0).contains(&number),
-            Rule::Intensity => number >= 0.0,
+            Rule::Intensity => number >= 0.0 && number != WHITE_LEVEL,
         };
         if !usual {
             let topic = match field.rule {
@@ -251,7 +261,7 @@ impl<'a> Parser<'a> {
                 Rule::Coefficient => Topic::Coefficient,
                 _ => Topic::Intensity,
             };
-            self.collector.warning(topic, place, || unusual(keyword, field, token));
+            self.collector.warning(topic, place, || unusual(keyword, field, token, number));
         }
         true
     }
@@ -298,15 +308,19 @@ impl<'a> Parser<'a> {
         self.singles[keyword as usize] = Some(single);
     }
 
-    fn refuse_keyword(&mut self, place: Place<'_>) {
+    /// `broken` is the line that this one probably continues.
+    fn refuse_keyword(&mut self, place: Place<'_>, broken: Option<usize>) {
         let token = place.line.token(place.span);
         let Guess { keyword, help } = keyword::guess(token);
         if let Some(keyword) = keyword {
             self.misspelt[keyword as usize] = true;
         }
         self.collector.error(place, || {
-            Detail::new(format!("unknown keyword `{}`", shown(token)), "expected a keyword")
-                .help(invisible(token).unwrap_or(help))
+            let help = match broken {
+                Some(line) => format!("the statement of line {line} is broken over two lines: write it in one"),
+                None => invisible(token).unwrap_or(help),
+            };
+            Detail::new(format!("unknown keyword `{}`", shown(token)), "expected a keyword").help(help)
         });
     }
 
@@ -397,7 +411,7 @@ fn parse_pixels(token: &[u8]) -> Option<f64> {
 enum NameFault {
     Encoding,
     Folder,
-    Control,
+    Hidden,
 }
 
 /// The name of a file in the working directory.
@@ -407,8 +421,8 @@ fn file_name(token: &[u8]) -> Result<&str, NameFault> {
     if drive || matches!(name, "." | "..") || name.contains(['/', '\\']) {
         return Err(NameFault::Folder);
     }
-    if name.contains(char::is_control) {
-        return Err(NameFault::Control);
+    if name.contains(is_hidden) {
+        return Err(NameFault::Hidden);
     }
     Ok(name)
 }
@@ -417,7 +431,7 @@ fn bad_output(place: Place<'_>, fault: &NameFault) -> Detail<'static> {
     let message = format!("OUTPUT `{}` is not a plain file name", shown(place.line.token(place.span)));
     match fault {
         NameFault::Encoding => Detail::new(message, "expected a file name in UTF-8"),
-        NameFault::Control => Detail::new(message, "expected a file name without control characters"),
+        NameFault::Hidden => Detail::new(message, "expected a file name without control or invisible characters"),
         NameFault::Folder => Detail::new(message, "expected a file name without a folder")
             .help("OUTPUT names a file, not a path; use -o to choose a folder"),
     }
@@ -472,13 +486,32 @@ fn out_of_range(keyword: Keyword, field: &Field, token: &[u8]) -> Detail<'static
     }
 }
 
-fn unusual(keyword: Keyword, field: &Field, token: &[u8]) -> Detail<'static> {
+fn unusual(keyword: Keyword, field: &Field, token: &[u8], number: f64) -> Detail<'static> {
     let (text, name, token) = (keyword.text(), field.name, shown(token));
     let (fault, usual) = match field.rule {
+        Rule::Intensity if number > 0.0 => ("far beyond 1", "usually about 0 to 1"),
         Rule::Intensity => ("negative", "usually 0 or more"),
         _ => ("outside 0 to 1", "usually 0 to 1"),
     };
-    Detail::new(format!("`{name}` of {text} is {fault}: {token}"), format!("{usual}: {}", field.about))
+    let detail = Detail::new(format!("`{name}` of {text} is {fault}: {token}"), format!("{usual}: {}", field.about));
+    match level(field.rule, number) {
+        Some(part) => detail.help(format!("{token} looks like a level of 0 to 255; colours are 0 to 1: write {part}")),
+        None => detail,
+    }
+}
+
+/// The greatest 8-bit level.
+const WHITE_LEVEL: f64 = 255.0;
+
+/// What a colour or intensity is that was written as an 8-bit level, such as 1 for 255.
+fn level(rule: Rule, number: f64) -> Option<f64> {
+    let is_level = match rule {
+        Rule::Color => number.fract() == 0.0 && (2.0..=WHITE_LEVEL).contains(&number),
+        // Lights may be brighter than 1.
+        Rule::Intensity => number == WHITE_LEVEL,
+        _ => false,
+    };
+    is_level.then(|| (number / WHITE_LEVEL * 1000.0).round() / 1000.0)
 }
 
 fn not_a_number(keyword: Keyword, field: &Field, token: &[u8], fault: Fault) -> Detail<'static> {
@@ -534,12 +567,8 @@ fn number_help(token: &[u8]) -> Option<String> {
 
 /// Names the first character that looks like a blank, or like nothing, but is part of the token.
 fn invisible(token: &[u8]) -> Option<String> {
-    let is_hidden = |&c: &char| {
-        c.is_whitespace()
-            || c.is_control()
-            || matches!(c, '\u{200B}'..='\u{200F}' | '\u{2060}'..='\u{206F}' | '\u{FEFF}')
-    };
-    let hidden = token.utf8_chunks().flat_map(|chunk| chunk.valid().chars()).find(is_hidden)?;
+    let is_invisible = |&c: &char| c.is_whitespace() || is_hidden(c);
+    let hidden = token.utf8_chunks().flat_map(|chunk| chunk.valid().chars()).find(is_invisible)?;
     let code = u32::from(hidden);
     Some(format!("it contains the invisible character U+{code:04X}; fields are separated by blanks and tabs only"))
 }
@@ -552,17 +581,39 @@ fn wrong_count_place<'a>(keyword: Keyword, line: Line<'a>, tokens: &Tokens) -> P
     line.place(surplus.unwrap_or_else(|| tokens.end()))
 }
 
+/// Whether the next line with anything in it begins with a number and has no more fields than a statement lacks.
+fn is_continued(keyword: Keyword, tokens: &Tokens, rest: &[u8]) -> bool {
+    let form = keyword.form();
+    let most = 1 + usize::from(form.named) + form.fields.len();
+    let mut rest = rest;
+    let mut next = Tokens::new();
+    while !rest.is_empty() {
+        let (line, taken) = first_line(rest);
+        rest = &rest[taken..];
+        next.split(line);
+        if let Some(&first) = next.kept().first() {
+            // A name may come first where not even that is there.
+            let named = form.named && tokens.count == 1;
+            let number = next.kept().get(usize::from(named)).copied().unwrap_or(first);
+            let is_number = parse_number(&line[number.start..number.end]).is_ok();
+            let is_keyword = Keyword::from_token(&line[first.start..first.end]).is_some();
+            return is_number && !is_keyword && tokens.count + next.count <= most;
+        }
+    }
+    false
+}
+
 /// What to say of a statement with too few or too many fields; `values` are its numbers as far as they are numbers.
-fn wrong_count(keyword: Keyword, line: Line<'_>, tokens: &Tokens, values: &Values) -> Detail<'static> {
+fn wrong_count(keyword: Keyword, line: Line<'_>, tokens: &Tokens, values: &Values, broken: bool) -> Detail<'static> {
     let form = keyword.form();
     let text = keyword.text();
     let given = tokens.count - 1;
-    if form.named && given == 0 {
+    if form.named && given == 0 && !broken {
         return Detail::new(format!("{text} has no name"), "expected a name")
             .help(format!("the line is written `{}`", keyword.usage()));
     }
-    let numbers = given - usize::from(form.named);
-    let found = format!("{text} has {numbers} field{}", if numbers == 1 { "" } else { "s" });
+    let numbers = given.saturating_sub(usize::from(form.named));
+    let found = format!("{text} has {}", count(numbers as u64, "field"));
     let after = if form.named { " after its name" } else { "" };
     let wanted = match (form.least(), form.fields.len()) {
         (least, most) if least == most => least.to_string(),
@@ -573,7 +624,9 @@ fn wrong_count(keyword: Keyword, line: Line<'_>, tokens: &Tokens, values: &Value
         None => "expected the end of the line".to_owned(),
     };
     let mut help = format!("the line is written `{}`", keyword.usage());
-    if let Some(hint) = count_hint(keyword, line, tokens, values) {
+    let hint = || count_hint(keyword, line, tokens, values);
+    let broken = broken.then(|| "the statement is broken over two lines: write it in one".to_owned());
+    if let Some(hint) = broken.or_else(hint) {
         help = format!("{hint}\n{help}");
     }
     Detail::new(format!("{found}{after} instead of {wanted}"), expected).help(help)

@@ -10,6 +10,7 @@ use super::plots;
 use crate::report::number::{ppm, short, time};
 use crate::settings::{Sampling, Settings};
 use crate::view::View;
+use crate::words::count;
 
 /// The page with all `studies` and the hard cases, where they were measured; `command` is what made them.
 pub fn html(studies: &[Study], hard_cases: Option<&HardCases>, command: &str) -> String {
@@ -109,12 +110,17 @@ fn coordinates(v: DVec3) -> String {
     format!("{x},{y},{z}")
 }
 
+/// A choice as the command line has it.
+fn word(choice: &impl serde::Serialize) -> String {
+    serde_json::to_value(choice).ok().and_then(|word| word.as_str().map(str::to_owned)).unwrap_or_default()
+}
+
 fn facts(study: &Study) -> Markup {
     let Settings { view, sampling, quantize, secondary, specular, max_depth, samples } = study.settings;
     html! {
         dl {
             dt { "Picture" }
-            dd { (study.width) " × " (study.height) ", " (study.spheres) " spheres, " (study.lights) " lights" }
+            dd { (study.width) " × " (study.height) ", " (count(study.spheres as u64, "sphere")) ", " (count(study.lights as u64, "light")) }
             dt { "Device" }
             @if view != View::FILE {
                 dt { "Camera" }
@@ -128,8 +134,9 @@ fn facts(study: &Study) -> Markup {
             dd { (study.cpu_threads) " threads" }
             dt { "Settings" }
             dd {
-                (format!("{sampling:?} sampling, {quantize:?}, {secondary:?}, {specular:?}, depth {max_depth}, ").to_lowercase())
-                (samples * samples) " spp"
+                (word(&sampling)) " sampling, quantize " (word(&quantize)) ", secondary epsilon "
+                (secondary.shadow) " for shadows and " (secondary.reflection) " for reflections, "
+                (word(&specular)) ", depth " (max_depth) ", " (samples * samples) " spp"
             }
             dt { "Tier for it" }
             dd { (study.selection.tier) ": " (study.selection.reason) }

@@ -9,6 +9,7 @@ use crate::report::Sample;
 use crate::report::csv::record;
 use crate::report::number::{short, time};
 use crate::settings::Settings;
+use crate::words::{count, visible};
 
 impl Study {
     /// Tables for people.
@@ -16,7 +17,9 @@ impl Study {
         let mut text = String::new();
         let device = self.device.as_ref().map_or_else(|| "the CPU alone".to_owned(), ToString::to_string);
         let Self { scene, width, height, spheres, lights, .. } = self;
-        let _ = writeln!(text, "{scene}: {width} × {height}, {spheres} spheres, {lights} lights, on {device}");
+        let (scene, spheres) = (visible(scene), count(*spheres as u64, "sphere"));
+        let lights = count(*lights as u64, "light");
+        let _ = writeln!(text, "{scene}: {width} × {height}, {spheres}, {lights}, on {device}");
         for skipped in &self.skipped {
             let _ = writeln!(text, "not measured: {}: {}", skipped.name, skipped.reason);
         }

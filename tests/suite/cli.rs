@@ -250,6 +250,7 @@ fn stats_tell_device_effects_rays_and_times() {
     assert_exit(&place.run("render --device cpu --res 20x10 --stats-json stats.json scene.txt"), 0, "20 × 10");
     let stats = std::fs::read_to_string(place.path().join("stats.json")).unwrap();
     let stats: serde_json::Value = serde_json::from_str(&stats).unwrap();
+    let stats = &stats["pictures"][0];
     assert_eq!(stats["device"], "the CPU reference (f64)");
     assert_eq!(stats["effects"]["set"], serde_json::json!(["ambient"]));
     assert_eq!(stats["rays"]["primary"], 200);
@@ -270,7 +271,7 @@ fn check_summarises_without_rendering() {
     let output = place.run("check scene.txt");
     assert_exit(&output, 0, "");
     let text = String::from_utf8(output.stdout).unwrap();
-    for part in ["16 × 8, 1 spheres, 0 lights", "(-2, -2, -7) to (2, 2, -3)", "sphere 's' has Ka > 0", "no warnings"] {
+    for part in ["16 × 8, 1 sphere, 0 lights", "(-2, -2, -7) to (2, 2, -3)", "sphere 's' has Ka > 0", "no warnings"] {
         assert!(text.contains(part), "{part} in {text}");
     }
     std::fs::write(place.path().join("bad.txt"), SCENE.replace("TOP", "TP")).unwrap();

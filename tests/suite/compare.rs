@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use trueray::compare::{
-    Bounds, Difference, Limits, ResemblanceKind, SCALE, Verdict, WorstPixel, heatmap, three_wide, verdict,
+    Band, Bounds, Difference, Limits, ResemblanceKind, SCALE, Verdict, WorstPixel, heatmap, three_wide, verdict,
 };
 use trueray::film::Picture;
 
@@ -184,6 +184,27 @@ fn rounding_against_truncation_is_found() {
 }
 
 #[test]
+fn a_scale_of_255_9_is_told_from_rounding() {
+    use ResemblanceKind::{OneLevelBrighter, OverscaledBrighter, OverscaledDarker};
+    // Values spread evenly, before a background that every rule makes something else of.
+    let of = |quantize: &dyn Fn(f64) -> f64, background: f64| {
+        picture(64, 64, |x, y| {
+            let c = f64::from((x * 64 + y) * 2654 % 4096) / 4096.0;
+            [quantize(if y < 30 { background } else { c }) as u8; 3]
+        })
+    };
+    for background in [0.0, 0.2, 0.5, 0.999, 1.0] {
+        let truncated = of(&|c| 255.0 * c, background);
+        let rounded = of(&|c| (255.0 * c).round(), background);
+        let overscaled = of(&|c| 255.9 * c, background);
+        assert_eq!(kinds(&between(&truncated, &overscaled)), [OverscaledBrighter], "{background}");
+        assert_eq!(kinds(&between(&overscaled, &truncated)), [OverscaledDarker], "{background}");
+        assert_eq!(kinds(&between(&truncated, &rounded)), [OneLevelBrighter], "{background}");
+        assert!(between(&truncated, &overscaled).report("a", "b").contains("× 255.9"));
+    }
+}
+
+#[test]
 fn limits_decide() {
     let (a, b) = pair();
     let difference = between(&a, &b);
@@ -219,9 +240,59 @@ fn heat_map_pixels() {
     let levels = [0, 1, 2, 3, 10, 11, 50, 51, 255];
     let a = picture(9, 1, |x, _| [if x == 0 { 255 } else { 0 }; 3]);
     let b = picture(9, 1, |x, _| if x == 0 { [255; 3] } else { [0, levels[x as usize], 0] });
-    let [blue, turquoise, yellow, orange, magenta] = SCALE.map(|band| band.color);
-    let expected = [[80; 3], blue, turquoise, yellow, yellow, orange, orange, magenta, magenta];
+    let [one, two, few, some, many] = SCALE.map(|band| band.color);
+    let expected = [[48; 3], one, two, few, few, some, some, many, many];
     assert_eq!(heatmap(&a, &b).unwrap().pixels(), expected);
+    assert_eq!(Band::counts(&a, &b).unwrap(), [1, 1, 2, 2, 2]);
+}
+
+/// CIE 1976 L*, a*, b* of a colour.
+fn lab(color: [f64; 3]) -> [f64; 3] {
+    let [r, g, b] = color;
+    let xyz = [
+        (0.4124 * r + 0.3576 * g + 0.1805 * b) / 0.9505,
+        0.2126 * r + 0.7152 * g + 0.0722 * b,
+        (0.0193 * r + 0.1192 * g + 0.9505 * b) / 1.0890,
+    ];
+    let [x, y, z] = xyz.map(|t| if t > 0.008_856 { t.cbrt() } else { 7.787 * t + 16.0 / 116.0 });
+    [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
+}
+
+/// Red, green and blue as light.
+fn linear(color: [u8; 3]) -> [f64; 3] {
+    color.map(|level| {
+        let c = f64::from(level) / 255.0;
+        if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+    })
+}
+
+/// How eyes without red, green or blue cones see light (Machado, Oliveira, Fernandes 2009, severity 1), and all others.
+const EYES: [[[f64; 3]; 3]; 4] = [
+    [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+    [[0.1523, 1.0526, -0.2049], [0.1145, 0.7863, 0.0992], [-0.0039, -0.0481, 1.0520]],
+    [[0.3673, 0.8606, -0.2280], [0.2801, 0.6725, 0.0474], [-0.0118, 0.0429, 0.9689]],
+    [[1.2555, -0.0767, -0.1788], [-0.0784, 0.9308, 0.1476], [0.0047, 0.6914, 0.3039]],
+];
+
+#[test]
+fn every_eye_can_read_the_heat_map() {
+    for eye in EYES {
+        let seen = |color: [u8; 3]| {
+            let light = linear(color);
+            lab(eye.map(|row| row.iter().zip(light).map(|(k, c)| k * c).sum::<f64>().clamp(0.0, 1.0)))
+        };
+        let bands = SCALE.map(|band| seen(band.color));
+        let same: Vec<_> = (0..=48).map(|grey| seen([grey; 3])).collect();
+        let distance = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+        // Of a step of lightness 10 nobody is in doubt.
+        assert!(bands.windows(2).all(|pair| pair[1][0] > pair[0][0] + 10.0), "{bands:?}");
+        for (index, &band) in bands.iter().enumerate() {
+            assert!(bands[..index].iter().all(|&other| distance(band, other) > 15.0), "{bands:?}");
+            assert!(same.iter().all(|&grey| distance(band, grey) > 15.0), "{band:?}");
+        }
+    }
+    let [purple, ..] = SCALE.map(|band| lab(linear(band.color))[0]);
+    assert!(lab(linear([48; 3]))[0] < purple);
 }
 
 #[test]

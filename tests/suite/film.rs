@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use proptest::prelude::*;
 use tempfile::TempDir;
 use trueray::film::{
-    Format, Leniency, Picture, PictureError, PictureWriter, Problem, Reading, Target, Warning, decode, read_picture,
+    Encoded, Format, Leniency, Picture, PictureError, PictureWriter, Problem, Reading, Target, Warning, decode,
+    read_picture,
 };
 
 /// A picture with all 256 sample values where it is large enough.
@@ -50,7 +51,7 @@ fn refusal(bytes: impl Into<Vec<u8>>) -> String {
 fn mended(bytes: &[u8]) -> (Vec<u8>, Vec<String>) {
     let refused = strict(bytes).unwrap_err();
     assert!(refused.lenient_helps(), "{refused}");
-    let Reading { picture, warnings } = lenient(bytes).unwrap();
+    let Reading { picture, warnings, .. } = lenient(bytes).unwrap();
     (picture.into_rgb(), warnings.iter().map(ToString::to_string).collect())
 }
 
@@ -320,6 +321,31 @@ fn headers_may_have_comments_and_any_white_space() {
     }
 }
 
+/// Netpbm's own: a comment stands for the line end that ends it, be that a line feed or a carriage return.
+#[test]
+fn comments_end_as_netpbm_has_it() {
+    let samples = b"D \x82#\n\r";
+    for header in [
+        "P6\n2 1\n255# right after\n",
+        "P6\n2 1\n255#\r",
+        "P6\n# of a Mac\r2 1\n255\n",
+        "P6#\r2#\r1#\r255 ",
+        "P6\r2 1\r255\r",
+    ] {
+        let bytes = [header.as_bytes(), samples].concat();
+        assert_eq!(strict(bytes).unwrap().picture.rgb(), samples, "{header:?}");
+    }
+    assert_eq!(strict("P3#\r1 1#\r255#\r1 2#\r3#").unwrap().picture.rgb(), [1, 2, 3]);
+    // A comment that the file ends in takes the raster with it.
+    assert!(refusal("P6 1 1 255# no end").contains("ends after 0 of 3 samples"));
+    // White space before the comment ends the header, so that the comment is a part of the raster.
+    assert_eq!(strict(*b"P6 1 1 255 # \n").unwrap().picture.rgb(), b"# \n");
+    assert_eq!(
+        refusal("P3\r1 1\r255\r1 2 x"),
+        "line 4: sample 3 (x 0, y 0, blue) is `x`; samples are whole numbers from 0 to 255"
+    );
+}
+
 #[test]
 fn the_first_sample_may_look_like_white_space() {
     let reading = strict(*b"P6 1 1 255\n\n# ").unwrap();
@@ -381,6 +407,119 @@ fn other_kinds_of_png() {
     assert_eq!(warnings, ["samples were scaled from 0..65535 to 0..255"]);
 }
 
+/// A PNG file of these chunks, each with its checksum.
+fn png_of(chunks: &[(&[u8; 4], &[u8])]) -> Vec<u8> {
+    let mut bytes = b"\x89PNG\r\n\x1a\n".to_vec();
+    for (name, data) in chunks {
+        bytes.extend((data.len() as u32).to_be_bytes());
+        let summed = [&name[..], data].concat();
+        bytes.extend(&summed);
+        bytes.extend(crc(&summed).to_be_bytes());
+    }
+    bytes
+}
+
+pub(crate) fn crc(bytes: &[u8]) -> u32 {
+    let bit = |crc: u32| if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 };
+    !bytes.iter().fold(!0, |crc, &byte| (0..8).fold(crc ^ u32::from(byte), |crc, _| bit(crc)))
+}
+
+/// `data` in the zlib format, not compressed.
+fn stored(data: &[u8]) -> Vec<u8> {
+    let length = data.len() as u16;
+    let (a, b) = data.iter().fold((1_u32, 0_u32), |(a, b), &byte| {
+        let a = (a + u32::from(byte)) % 65521;
+        (a, (a + b) % 65521)
+    });
+    let head = [&[0x78, 0x01, 1][..], &length.to_le_bytes(), &(!length).to_le_bytes()].concat();
+    [&head[..], data, &(b << 16 | a).to_be_bytes()].concat()
+}
+
+fn header(width: u32, height: u32, depth: u8, color: u8, interlaced: bool) -> Vec<u8> {
+    [&width.to_be_bytes()[..], &height.to_be_bytes(), &[depth, color, 0, 0, interlaced.into()]].concat()
+}
+
+#[test]
+fn interlaced_png() {
+    // Of 2 × 2 pixels the passes are the first pixel, its right neighbour and the second row.
+    let data = stored(&[0, 1, 2, 3, 0, 4, 5, 6, 0, 7, 8, 9, 10, 11, 12]);
+    let bytes = png_of(&[(b"IHDR", &header(2, 2, 8, 2, true)), (b"IDAT", &data), (b"IEND", b"")]);
+    assert_eq!(strict(bytes).unwrap().picture.rgb(), [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]);
+    // Palette indices of two bits, passes one to a byte.
+    let data = stored(&[0, 0x40, 0, 0x80, 0, 0x10]);
+    let palette = [9, 9, 9, 1, 2, 3, 4, 5, 6];
+    let chunks = [(b"IHDR", &header(2, 2, 2, 3, true)[..]), (b"PLTE", &palette), (b"IDAT", &data), (b"IEND", b"")];
+    assert_eq!(strict(png_of(&chunks)).unwrap().picture.rgb(), [1, 2, 3, 4, 5, 6, 9, 9, 9, 1, 2, 3]);
+}
+
+#[test]
+fn a_declared_colour_is_transparent() {
+    let grey = |declared: &[u8]| {
+        let chunks = [
+            (b"IHDR", &header(2, 1, 4, 0, false)[..]),
+            (b"tRNS", declared),
+            (b"IDAT", &stored(&[0, 0x3c])),
+            (b"IEND", b""),
+        ];
+        png_of(&chunks)
+    };
+    assert_eq!(strict(grey(&[0, 4])).unwrap().picture.rgb(), [51, 51, 51, 204, 204, 204]);
+    assert_eq!(refusal(grey(&[0, 12])), "the pixel at x 1, y 0 is not opaque");
+    assert_eq!(mended(&grey(&[0, 12])).0, [51, 51, 51, 204, 204, 204]);
+    let palette = [
+        (b"IHDR", &header(3, 2, 8, 3, false)[..]),
+        (b"PLTE", &[1, 1, 1, 2, 2, 2]),
+        (b"tRNS", &[0]),
+        (b"IDAT", &stored(&[0, 1, 1, 1, 0, 1, 0, 0])),
+        (b"IEND", b""),
+    ];
+    let (samples, warnings) = mended(&png_of(&palette));
+    assert_eq!(samples[12..15], [1; 3]);
+    assert_eq!(warnings, ["pixels not opaque, transparency ignored: 2"]);
+    assert_eq!(refusal(png_of(&palette)), "the pixel at x 1, y 1 is not opaque");
+    let rgb = [
+        (b"IHDR", &header(1, 1, 8, 2, false)[..]),
+        (b"tRNS", &[0, 1, 0, 2, 0, 3]),
+        (b"IDAT", &stored(&[0, 1, 2, 3])),
+        (b"IEND", b""),
+    ];
+    assert_eq!(refusal(png_of(&rgb)), "the pixel at x 0, y 0 is not opaque");
+}
+
+#[test]
+fn chunks_about_colours_are_named() {
+    let chunks = [
+        (b"IHDR", &header(1, 1, 8, 0, false)[..]),
+        (b"gAMA", &45455_u32.to_be_bytes()),
+        (b"sRGB", &[0]),
+        (b"iCCP", b"broken"),
+        (b"tEXt", b"Comment\0gAMA"),
+        (b"IDAT", &stored(&[0, 7])),
+        (b"IEND", b""),
+    ];
+    let reading = strict(png_of(&chunks)).unwrap();
+    assert_eq!(reading.picture.rgb(), [7; 3]);
+    assert_eq!((reading.color_spaces, reading.warnings), (vec!["gAMA", "sRGB", "iCCP"], vec![]));
+    assert!(strict(file_bytes(&sample_picture(3, 3), Format::Png)).unwrap().color_spaces.is_empty());
+}
+
+#[test]
+fn sizes_are_known_before_anything_is_decoded() {
+    let size = |bytes: &[u8]| Encoded::from_stream("x", bytes).and_then(|encoded| encoded.size());
+    for format in Format::ALL {
+        assert_eq!(size(&file_bytes(&sample_picture(7, 3), format)).unwrap(), (7, 3));
+    }
+    assert_eq!(size(b"P6 70000 3 255\n").unwrap(), (70000, 3));
+    assert_eq!(size(b"P6 0 3 255\n").unwrap_err().to_string(), "x: line 1: a picture of 0x3 pixels has no pixels");
+    // The file could hold so many black pixels, but nobody has room for them.
+    let mut vast = png_of(&[(b"IHDR", &header(65528, 65535, 1, 0, false)), (b"IDAT", &[0; 1000])]);
+    vast.resize(600_000, 0);
+    let expected = "the header promises 65528x65535 pixels; at most 1073741824 are read";
+    assert_eq!(size(&vast).unwrap_err().to_string(), format!("x: {expected}"));
+    assert_eq!(refusal(vast.clone()), expected);
+    assert_eq!(lenient(vast).unwrap_err().to_string(), expected);
+}
+
 // --- reading: what is wrong -----------------------------------------------------------------------------------------
 
 #[test]
@@ -433,7 +572,7 @@ fn malformed_headers() {
         ("P6\n4000000000 1\n255\n", "line 2: a picture of 4000000000x1 pixels is too large"),
         ("P3 1 1\n0\n0 0 0", "line 2: the maximum is 0; it must be 1 to 65535"),
         ("P3 1 1\n65536\n0 0 0", "line 2: the maximum is 65536; it must be 1 to 65535"),
-        ("P6 1 1 255#\nabc", "line 1: white space must follow the maximum"),
+        ("P6 1 1 255x\nabc", "line 1: the maximum is `255x`; it must be a whole number"),
     ] {
         assert_eq!(refusal(text), expected, "{text:?}");
         assert!(lenient(text).is_err(), "{text:?}");
@@ -544,18 +683,51 @@ fn damaged_png() {
         let message = refusal(&bytes[..cut]);
         assert!(message.starts_with("damaged PNG: "), "{message}");
     }
-    let expected = "the PNG does not end with its IEND chunk (cut off, or data after it)";
+    let expected = "data after the end of the PNG: 1 byte";
     let longer = [&bytes[..], b"x"].concat();
     assert_eq!(refusal(longer.clone()), expected);
     let (samples, warnings) = mended(&longer);
     assert_eq!(samples, sample_picture(40, 40).rgb());
-    assert_eq!(warnings, ["the PNG does not end with its IEND chunk; its pixels are complete"]);
+    assert_eq!(warnings, ["data after the end of the PNG, ignored: 1 byte"]);
     for cut in bytes.len() - 20..bytes.len() {
         assert!(strict(&bytes[..cut]).is_err(), "{cut}");
     }
+    // Up to its last chunk no pixel is missing.
+    for cut in bytes.len() - 12..bytes.len() {
+        let expected = "the PNG is cut off after its pixels: it does not end with its IEND chunk";
+        assert_eq!(refusal(&bytes[..cut]), expected);
+        let (samples, warnings) = mended(&bytes[..cut]);
+        assert_eq!(samples, sample_picture(40, 40).rgb());
+        assert_eq!(warnings, ["the PNG does not end with its IEND chunk; its pixels are complete"]);
+    }
+    assert!(lenient(&bytes[..bytes.len() - 13]).is_err(), "the checksum of the pixels");
+    // A second picture ends with such a chunk, too.
+    let twice = [&bytes[..], &bytes].concat();
+    assert_eq!(refusal(twice.clone()), format!("data after the end of the PNG: {} bytes", bytes.len()));
+    assert_eq!(mended(&twice).0, sample_picture(40, 40).rgb());
     let mut flipped = bytes;
     flipped[100] ^= 1;
     assert!(refusal(flipped).starts_with("damaged PNG: "));
+}
+
+#[test]
+fn damaged_palettes() {
+    let indexed = |palette: &[u8], depth: u8, data: &[u8]| {
+        let header = header(3, 2, depth, 3, false);
+        let png = png_of(&[(b"IHDR", &header), (b"PLTE", palette), (b"IDAT", &stored(data)), (b"IEND", b"")]);
+        (strict(png.clone()).map(|reading| reading.picture.into_rgb()), lenient(png))
+    };
+    let (good, _) = indexed(&[1, 2, 3, 4, 5, 6], 4, &[0, 0x01, 0, 0, 0x10, 0]);
+    assert_eq!(good.unwrap(), [1, 2, 3, 4, 5, 6, 1, 2, 3, 4, 5, 6, 1, 2, 3, 1, 2, 3]);
+    let (strict, lenient) = indexed(&[1, 2, 3, 4, 5, 6], 4, &[0, 0x01, 0, 0, 0x12, 0]);
+    let expected = "damaged PNG: the pixel at x 1, y 1 has index 2 in a palette of 2 colours";
+    assert_eq!(strict.unwrap_err().to_string(), expected);
+    assert_eq!(lenient.unwrap_err().to_string(), expected);
+    for palette in [&[1, 2, 3, 4][..], &[1], &[1, 2]] {
+        let (strict, lenient) = indexed(palette, 8, &[0; 8]);
+        let message = strict.unwrap_err().to_string();
+        assert!(message.starts_with("damaged PNG: the palette has ") && lenient.is_err(), "{message}");
+    }
 }
 
 // --- properties -----------------------------------------------------------------------------------------------------

@@ -402,6 +402,55 @@ fn warnings_are_bounded_by_kind_and_counted() {
     assert_eq!(omitted, expected);
 }
 
+/// The help of every error, in order.
+fn helps(text: impl AsRef<[u8]>) -> Vec<String> {
+    read(text).diagnostics.into_iter().filter_map(|found| found.help).collect()
+}
+
+#[test]
+fn a_statement_broken_over_two_lines_is_recognised() {
+    let broken = "broken over two lines";
+    for (text, line) in [
+        ("SPHERE s 0 0 -10 2 4 2\n0.5 0 0 1 1 0.9 0 50\n", 7),
+        ("SPHERE s 0 0 -10 2 4 2 # the place\n\n # the rest\n\t0.5 0 0 1 1 0.9 0 50 0.5 1.5\n", 7),
+        ("LIGHT\nl 0 0 0 1 1 1\n", 7),
+        ("BACK 0\n0 0\n", 7),
+    ] {
+        let helps = helps(format!("{REQUIRED}{text}"));
+        assert_eq!(helps.len(), 2, "{helps:?}");
+        assert!(helps.iter().all(|help| help.contains(broken)), "{helps:?}");
+        assert!(helps[1].contains(&format!("line {line} ")), "{helps:?}");
+    }
+    // Another mistake, and a line that fits no statement before it.
+    for text in [
+        "SPHERE s 0 0 -10 2 4 2\nLIGHT l 0 0 0 1 1 1\n",
+        "SPHERE s 0 0 -10 2 4 2\n",
+        "BACK 0 0\n1 1\n",
+        "BACK 0 0 0\n1 1\n",
+    ] {
+        let helps = helps(format!("{REQUIRED}{text}"));
+        assert!(helps.iter().all(|help| !help.contains(broken)), "{helps:?}");
+    }
+}
+
+#[test]
+fn a_colour_that_looks_like_a_level_is_named_as_such() {
+    for (line, help) in [
+        ("BACK 0 255 0", "write 1"),
+        ("BACK 0 0 128", "write 0.502"),
+        ("BACK 2 0 0", "write 0.008"),
+        ("AMBIENT 255 1 1", "write 1"),
+        ("LIGHT l 0 0 255 0 255 1.5", "write 1"),
+    ] {
+        let found = only(scene_with(line)).help.unwrap();
+        assert!(found.ends_with(help) && found.contains("a level of 0 to 255"), "{found}");
+    }
+    for line in ["BACK 1.5 0 0", "BACK -1 0 0", "BACK 256 0 0"] {
+        assert_eq!(only(scene_with(line)).help, None);
+    }
+    scene(scene_with("LIGHT l 0 0 0 100 254 256"));
+}
+
 #[test]
 fn utf16_is_named_as_such() {
     for mark in [b"\xFF\xFE", b"\xFE\xFF"] {
@@ -437,7 +486,7 @@ fn nothing_in_a_report_is_obeyed_by_a_terminal() {
     let is_safe = |c: char| c == '\n' || (!c.is_control() && c != '\u{202e}');
     assert!(report.chars().all(is_safe), "{report:?}");
     assert!(report.contains("a␛[2J.txt:1:1\n"), "{report}");
-    assert!(report.contains("1 │ ␛[31mX␀␡\u{FFFD} \u{FFFD}\n"), "{report}");
+    assert!(report.contains("1 │ ␛[31mX␀␡\u{FFFD} \\u{202e}\n"), "{report}");
 }
 
 const UNKNOWN: &str = "\

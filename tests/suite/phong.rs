@@ -90,6 +90,7 @@ fn level(color: f64, quantize: Quantize) -> u8 {
     match quantize {
         Quantize::Truncate => scaled.floor() as u8,
         Quantize::Round => (scaled + 0.5).floor() as u8,
+        Quantize::Overscale => (scaled / 255.0 * 255.9).floor() as u8,
     }
 }
 
@@ -404,7 +405,7 @@ fn a_sample_lies_where_the_settings_say() {
     let expected = ambient(&GLOSS) + lit(&point, &GLOSS, &lamp, Specular::Phong);
     let mut cases = Vec::new();
     for sampling in [Sampling::Corner, Sampling::BottomLeft, Sampling::Center] {
-        for quantize in [Quantize::Truncate, Quantize::Round] {
+        for quantize in [Quantize::Truncate, Quantize::Round, Quantize::Overscale] {
             let case = case(format!("{sampling:?}, {quantize:?}"), SLANTED, statements.clone(), expected);
             cases.push(case.with(|settings| (settings.sampling, settings.quantize) = (sampling, quantize)));
         }

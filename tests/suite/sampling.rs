@@ -250,6 +250,7 @@ fn the_command_line_renders_a_part_and_says_so() {
         assert!(said.contains("foveated: all pixels within 12 of (30, 20)"), "{said}");
         let stats = std::fs::read(path.join("stats.json")).unwrap();
         let stats: serde_json::Value = serde_json::from_slice(&stats).unwrap();
+        let stats = &stats["pictures"][0];
         let sampled = &stats["sampled"];
         let density = foveated([30.0, 20.0], 12.0, 12.0, 0.1);
         let samples = Samples::new((120, 80), &density).unwrap();

@@ -562,7 +562,16 @@ fn the_device_reads_every_field_where_the_host_wrote_it() {
         let cells: usize = before_grid().map(Lists::cells).sum();
         let entries: usize = before_grid().map(|lists| lists.entries.len()).sum();
         // 40 columns and as many rows; one light.
-        expected[0].extend([cells as u32, 80, 1, 5, 0, entries as u32, 0.25_f32.next_up().to_bits()]);
+        expected[0].extend([
+            cells as u32,
+            80,
+            1,
+            5,
+            0,
+            entries as u32,
+            0.25_f32.next_up().to_bits(),
+            255.0_f32.to_bits(),
+        ]);
         assert_eq!(echo_layout(&gpu, &scene, &settings, &effects, kernel).unwrap(), expected.concat(), "{kernel:?}");
     }
 }

@@ -1,6 +1,7 @@
 //! The statements of the format: their keywords, their fields, and which of them was probably meant.
 
 use super::number::parse_number;
+use crate::words::slips;
 
 /// The fields of a `SPHERE` line after its name, `Kt` and `eta` included: the most that any statement has.
 pub(super) const MAX_FIELDS: usize = 16;
@@ -55,7 +56,7 @@ pub(super) enum Rule {
     Color,
     /// Usually 0 to 1.
     Coefficient,
-    /// Usually at least 0.
+    /// Usually at least 0, and no level of 255.
     Intensity,
 }
 
@@ -253,33 +254,11 @@ pub(super) fn guess(token: &[u8]) -> Guess {
 /// The keyword that `upper` begins with (`BACKGROUND`, `NEAR=1`) or that it is a slip away from.
 fn similar(upper: &[u8]) -> Option<Keyword> {
     let begins = |keyword: &Keyword| upper.starts_with(keyword.text().as_bytes());
-    let slips = |keyword: Keyword| {
+    let near = |keyword: Keyword| {
         let text = keyword.text().as_bytes();
         let most = if text.len() <= 4 { 1 } else { 2 };
-        Some((distance(upper, text), keyword)).filter(|&(slips, _)| slips <= most)
+        Some((slips(upper, text), keyword)).filter(|&(slips, _)| slips <= most)
     };
-    let nearest = || Keyword::ALL.into_iter().filter_map(slips).min_by_key(|&(slips, _)| slips);
+    let nearest = || Keyword::ALL.into_iter().filter_map(near).min_by_key(|&(slips, _)| slips);
     Keyword::ALL.into_iter().find(begins).or_else(|| nearest().map(|(_, keyword)| keyword))
-}
-
-/// How many letters must be inserted, removed, replaced or swapped with their neighbour to turn `a` into `b`.
-fn distance(a: &[u8], b: &[u8]) -> usize {
-    // Any bound above the accepted distances will do; it keeps the table small.
-    if a.len().abs_diff(b.len()) > 2 {
-        return usize::MAX;
-    }
-    let mut table = vec![vec![0; b.len() + 1]; a.len() + 1];
-    for i in 0..=a.len() {
-        for j in 0..=b.len() {
-            table[i][j] = if i == 0 || j == 0 {
-                i + j
-            } else {
-                let replaced = table[i - 1][j - 1] + usize::from(a[i - 1] != b[j - 1]);
-                let swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
-                let swapped = if swapped { table[i - 2][j - 2] + 1 } else { usize::MAX };
-                replaced.min(swapped).min(table[i - 1][j] + 1).min(table[i][j - 1] + 1)
-            };
-        }
-    }
-    table[a.len()][b.len()]
 }
