@@ -32,7 +32,7 @@ fn tunings() -> [Tuning; 5] {
 fn render(gpu: &Gpu, tier: Tier, scene: &Scene, settings: &Settings) -> Vec<u8> {
     let effects = Effects::of(scene, settings);
     let mut rgb = vec![0; scene.width as usize * scene.height as usize * 3];
-    GpuRenderer::new(gpu, scene, settings, &effects, tier).unwrap().rows(0, &mut rgb).unwrap();
+    assert!(GpuRenderer::new(gpu, scene, settings, &effects, tier).unwrap().rows(0, &mut rgb).unwrap().cut.is_empty());
     rgb
 }
 
