@@ -15,6 +15,9 @@ const ADMITS: &str = "WGPU_ALLOW_UNDERLYING_NONCOMPLIANT_ADAPTER";
 /// So many messages of the loader are passed on; those that follow are mostly consequences.
 const MAX_MESSAGES: usize = 4;
 
+/// How the loader says that a layer is between it and the drivers.
+const INSERTS: &str = "nsert instance layer";
+
 /// A device that is there and cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Hidden {
@@ -63,7 +66,9 @@ impl Diagnosis {
         let messages = Mutex::new(Vec::new());
         let mut listener = vk::DebugUtilsMessengerCreateInfoEXT::default()
             .message_severity(
-                vk::DebugUtilsMessageSeverityFlagsEXT::ERROR | vk::DebugUtilsMessageSeverityFlagsEXT::WARNING,
+                vk::DebugUtilsMessageSeverityFlagsEXT::ERROR
+                    | vk::DebugUtilsMessageSeverityFlagsEXT::WARNING
+                    | vk::DebugUtilsMessageSeverityFlagsEXT::INFO,
             )
             .message_type(vk::DebugUtilsMessageTypeFlagsEXT::GENERAL)
             .pfn_user_callback(Some(hear))
@@ -77,6 +82,7 @@ impl Diagnosis {
             .application_info(&application)
             .enabled_extension_names(if speaks { &names } else { &[] })
             .push_next(&mut listener);
+        let mut has_failed = false;
         match unsafe { entry.create_instance(&create, None) } {
             Ok(instance) => {
                 match unsafe { instance.enumerate_physical_devices() } {
@@ -87,11 +93,20 @@ impl Diagnosis {
             }
             // There is none, which is no failure; where there should be one, the loader has said why there is not.
             Err(vk::Result::ERROR_INCOMPATIBLE_DRIVER) => {}
-            Err(error) => diagnosis.failures.push(format!("no Vulkan instance can be made: {error}")),
+            Err(error) => {
+                has_failed = true;
+                diagnosis.failures.push(format!("no Vulkan instance can be made: {error}"));
+            }
         }
         let messages = messages.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let (layers, messages): (Vec<String>, Vec<_>) =
+            messages.into_iter().partition(|message: &String| message.contains(INSERTS));
+        if has_failed && !layers.is_empty() {
+            let names: Vec<_> = layers.iter().filter_map(|layer| Some(layer.split_once(INSERTS)?.1.trim())).collect();
+            diagnosis.failures.push(format!("a driver has failed, or a layer: {}", names.join(", ")));
+        }
         // What the environment asks for is obeyed, which is no failure.
-        let failed = messages.into_iter().filter(|message: &String| !message.contains("env var"));
+        let failed = messages.into_iter().filter(|message| !message.contains("env var"));
         diagnosis.failures.extend(failed.take(MAX_MESSAGES));
         diagnosis
     }
@@ -174,7 +189,7 @@ fn chosen_drivers() -> Option<String> {
 /// Keeps what the loader says.
 #[allow(unsafe_code, reason = "what Vulkan hands over is valid for the call; the list outlives the instance")]
 unsafe extern "system" fn hear(
-    _: vk::DebugUtilsMessageSeverityFlagsEXT,
+    severity: vk::DebugUtilsMessageSeverityFlagsEXT,
     _: vk::DebugUtilsMessageTypeFlagsEXT,
     data: *const vk::DebugUtilsMessengerCallbackDataEXT<'_>,
     messages: *mut c_void,
@@ -185,7 +200,8 @@ unsafe extern "system" fn hear(
     {
         let message = unsafe { CStr::from_ptr(data.p_message) }.to_string_lossy();
         let mut messages = messages.lock().unwrap_or_else(PoisonError::into_inner);
-        if !messages.iter().any(|other| *other == message) {
+        let matters = severity != vk::DebugUtilsMessageSeverityFlagsEXT::INFO || message.contains(INSERTS);
+        if matters && !messages.iter().any(|other| *other == message) {
             messages.push(message.into_owned());
         }
     }
