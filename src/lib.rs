@@ -32,6 +32,7 @@ pub mod scene;
 pub mod settings;
 pub mod stress;
 pub mod study;
+mod threads;
 pub mod tiles;
 pub mod tuning;
 pub mod verify;

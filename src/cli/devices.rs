@@ -2,7 +2,7 @@
 
 use super::failure::{Failure, NO_DEVICE, OK, OUTPUT};
 use super::output::{errln, outln};
-use crate::gpu::{DeviceTuning, Error, list};
+use crate::gpu::{DeviceTuning, Error, hidden, list};
 
 /// Arguments of `trueray devices`.
 #[derive(Debug, clap::Args)]
@@ -21,8 +21,13 @@ pub(super) fn run(args: &Args) -> u8 {
 
 fn print(args: &Args) -> Result<(), Failure> {
     let devices = list()?;
+    let hidden = hidden();
     if args.json {
-        let json = serde_json::to_string_pretty(&devices).map_err(|e| Failure::new(OUTPUT, e.to_string()))?;
+        // Those without an index cannot be chosen.
+        let usable = devices.iter().map(serde_json::to_value);
+        let all: Result<Vec<_>, _> = usable.chain(hidden.iter().map(serde_json::to_value)).collect();
+        let json = all.and_then(|all| serde_json::to_string_pretty(&all));
+        let json = json.map_err(|e| Failure::new(OUTPUT, e.to_string()))?;
         outln!("{json}");
     } else {
         const MIB: u64 = 1 << 20;
@@ -48,6 +53,10 @@ fn print(args: &Args) -> Result<(), Failure> {
                 errln!("trueray: {warning}");
             }
             outln!("   tuning    {}", tuned.summary());
+        }
+        // Where there are no others, the error has them.
+        for device in hidden.iter().filter(|_| !devices.is_empty()) {
+            outln!("-: {device}");
         }
     }
     if devices.is_empty() {

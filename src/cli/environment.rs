@@ -4,10 +4,13 @@ use crate::gpu::drivers;
 
 /// Sets what is not set yet; before any thread starts.
 pub(super) fn prepare() {
+    let variables = || std::env::vars_os().map(|(name, _)| name);
     // Mesa's device-select layer asks the display server which device it uses, and complains where there is none. Nothing
-    // here needs a display, and devices are ranked by their type.
-    set_unless_set("NODEVICE_SELECT", "1");
-    if let Some(idle) = drivers::idle(std::env::vars_os().map(|(name, _)| name)) {
+    // here needs a display, and devices are ranked by their type, unless the user has chosen one.
+    if !drivers::is_device_chosen(variables()) {
+        set_unless_set(drivers::NO_CHOOSER, "1");
+    }
+    if let Some(idle) = drivers::idle(variables()) {
         set_unless_set(drivers::SWITCH, idle);
     }
     return_memory();

@@ -6,6 +6,7 @@ use std::fmt;
 use crate::film::OutputError;
 use crate::gpu;
 use crate::misuse::Misuse;
+use crate::threads;
 use crate::words::visible_lines;
 
 /// All is well.
@@ -24,6 +25,8 @@ pub(super) const NO_DEVICE: u8 = 4;
 pub(super) const DEVICE_LOST: u8 = 5;
 /// A file cannot be written.
 pub(super) const OUTPUT: u8 = 6;
+/// The system gives no thread where one is needed.
+pub(super) const NO_THREAD: u8 = 7;
 
 /// Why a subcommand ends early.
 #[derive(Debug)]
@@ -58,6 +61,10 @@ impl fmt::Display for Failure {
 impl From<gpu::Error> for Failure {
     fn from(error: gpu::Error) -> Self {
         let code = match error {
+            gpu::Error::NoDevice(why) if threads::are_short() => {
+                let help = "help: the system refuses threads, of which a driver needs some: `ulimit -u` says how many there may be";
+                return Self::new(NO_THREAD, format!("{why}\n  {help}"));
+            }
             gpu::Error::NoDevice(_) => NO_DEVICE,
             gpu::Error::Lost(_) | gpu::Error::Wrong(_) => DEVICE_LOST,
             gpu::Error::Misuse(_) => USAGE,

@@ -105,8 +105,8 @@ impl PictureOptions {
     pub(super) fn wishes(&self, scene: &Scene, precision: precision::Request) -> Result<Wishes, Failure> {
         let settings = self.settings()?;
         let CameraOptions { eye, look_at, up } = self.camera;
-        let ahead = look_at.unwrap_or(eye + Pose::of_file(Range::of(scene)).look_at);
-        let pose = (settings.view != View::FILE).then_some(Pose { eye, look_at: ahead, up });
+        let pose = look_at.map_or_else(|| Pose::ahead(eye, up, Range::of(scene)), |look_at| Pose { eye, look_at, up });
+        let pose = (settings.view != View::FILE).then_some(pose);
         Ok(Wishes { pose, settings, effects: self.effects.clone(), precision, res: self.res })
     }
 
@@ -158,30 +158,43 @@ pub(super) struct DeviceOptions {
 }
 
 impl DeviceOptions {
-    /// The Vulkan device, or `None` for the CPU reference. `auto` takes the reference where there is no device at all and
-    /// says so.
+    /// The Vulkan device, or `None` for the CPU reference. `auto` takes the reference where no device can be used at all, and says
+    /// why.
     pub(super) fn open(&self) -> Result<Option<Gpu>, Error> {
-        match &self.device {
-            Choice::Cpu => Ok(None),
-            Choice::Auto => match open_device(&Choice::Auto) {
-                Err(Error::NoDevice(_)) if crate::gpu::list().is_ok_and(|list| list.is_empty()) => {
-                    errln!("trueray: no Vulkan device was found, rendering on the CPU reference");
-                    Ok(None)
+        self.open_with(false)
+    }
+
+    /// Likewise; where it is to be `quiet`, nothing is said but that.
+    pub(super) fn open_with(&self, quiet: bool) -> Result<Option<Gpu>, Error> {
+        let gpu = match &self.device {
+            Choice::Cpu => return Ok(None),
+            Choice::Auto => match Gpu::open(&Choice::Auto) {
+                Err(Error::NoDevice(why)) if crate::gpu::list().is_ok_and(|list| list.is_empty()) => {
+                    errln!("trueray: rendering on the CPU reference: {why}");
+                    return Ok(None);
                 }
-                result => result.map(Some),
+                result => result?,
             },
-            choice => open_device(choice).map(Some),
+            choice => Gpu::open(choice)?,
+        };
+        if !quiet {
+            warn_of_tuning(&gpu);
         }
+        Ok(Some(gpu))
     }
 }
 
 /// Opens a Vulkan device, and says where a tuning that is kept for it cannot be used.
 pub(super) fn open_device(choice: &Choice) -> Result<Gpu, Error> {
     let gpu = Gpu::open(choice)?;
+    warn_of_tuning(&gpu);
+    Ok(gpu)
+}
+
+fn warn_of_tuning(gpu: &Gpu) {
     if let Some(warning) = &gpu.tuned().warning {
         errln!("trueray: {warning}");
     }
-    Ok(gpu)
 }
 
 impl DeviceOptions {

@@ -19,6 +19,7 @@ use crate::precision::Selection;
 use crate::sampling::Samples;
 use crate::scene::Scene;
 use crate::settings::Settings;
+use crate::threads::at_once;
 use crate::verify::Verify;
 use crate::words::{count, visible};
 
@@ -83,16 +84,12 @@ fn render_all(args: &Args) -> Result<u8, Failure> {
     // Opening a device takes longer than reading most scenes: both at once, and what else can be done without one. The device is
     // opened here, since a driver's many allocations are cheaper on the thread whose heap grows in large steps.
     let start = Instant::now();
-    let (gpu, open_time, (first, ahead)) = std::thread::scope(|scope| {
-        let reading = scope.spawn(|| {
-            let loaded = Loaded::read(&args.scenes[0], args.quiet);
-            let ahead = loaded.as_ref().ok().and_then(|loaded| args.ahead(&loaded.scene, &settings));
-            (loaded, ahead)
-        });
-        let gpu = args.device.open();
-        let failed = |_| (Err(Failure::new(super::failure::SCENE, "reading the scene failed")), None);
-        (gpu, start.elapsed(), reading.join().unwrap_or_else(failed))
-    });
+    let read = || {
+        let loaded = Loaded::read(&args.scenes[0], args.quiet);
+        let ahead = loaded.as_ref().ok().and_then(|loaded| args.ahead(&loaded.scene, &settings));
+        (loaded, ahead)
+    };
+    let ((first, ahead), (gpu, open_time)) = at_once(read, || (args.device.open_with(args.quiet), start.elapsed()));
     let ready_time = start.elapsed();
 
     let mut all_stats = Vec::new();

@@ -59,8 +59,9 @@ pub(super) fn run_tune(
     }
     match file {
         Some(_) => Ok(()),
-        None => {
-            Err(Failure::new(OUTPUT, "there is no cache folder to keep it in: neither XDG_CACHE_HOME nor HOME is set"))
-        }
+        None => Err(Failure::new(
+            OUTPUT,
+            "there is no cache folder to keep it in: neither XDG_CACHE_HOME nor HOME names one",
+        )),
     }
 }

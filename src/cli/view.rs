@@ -4,11 +4,12 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::failure::{DEVICE_LOST, Failure, OK, OUTPUT, USAGE};
+use super::failure::{Failure, NO_THREAD, OK, OUTPUT, USAGE};
 use super::input::Loaded;
 use super::options::{DeviceOptions, PictureOptions};
 use super::output::{errln, outln};
 use crate::gpu;
+use crate::threads::{at_once, is_alone};
 use crate::viewer::{Server, Studio, Watched, watch};
 
 /// Arguments of `trueray view`.
@@ -24,7 +25,7 @@ pub(super) struct Args {
     /// Where the page is served; port 0 is any free one
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:0")]
     listen: SocketAddr,
-    /// Print errors only, and the address
+    /// Print errors only, the address, and whether it is served to the network
     #[arg(short, long)]
     quiet: bool,
 }
@@ -41,32 +42,34 @@ fn view(args: &Args) -> Result<(), Failure> {
         return Err(Failure::new(USAGE, "a scene that is to be watched must be a file"));
     }
     args.picture.settings()?;
+    if is_alone() {
+        return Err(Failure::new(
+            NO_THREAD,
+            "the system gives no thread for the pictures: `ulimit -u` says how many there may be",
+        ));
+    }
     // Opening a device takes longer than reading most scenes: both at once. A page may come before either.
     let server = Server::bind(args.listen)
         .map_err(|error| Failure::new(OUTPUT, format!("cannot listen at {}: {error}", args.listen)))?;
-    let (gpu, loaded) = std::thread::scope(|scope| {
-        let opening = scope.spawn(|| args.device.open());
-        let loaded = Loaded::read(&args.scene, args.quiet);
-        (opening.join(), loaded)
-    });
-    let loaded = loaded?;
-    let gpu = gpu.map_err(|_| Failure::new(DEVICE_LOST, "opening the device failed"))??;
-    if !args.listen.ip().is_loopback() && !args.quiet {
+    let (gpu, loaded) = at_once(|| args.device.open_with(args.quiet), || Loaded::read(&args.scene, args.quiet));
+    let (loaded, gpu) = (loaded?, gpu?);
+    // Whoever is quiet wants to know this all the same.
+    if !args.listen.ip().is_loopback() {
         errln!("trueray: the page is served to the network, without encryption");
     }
-    outln!("{}", server.url());
-
     let wishes = args.picture.wishes(&loaded.scene, args.device.precision)?;
     let studio = Arc::new(Studio::new(Watched::new(&args.scene, loaded.scene), wishes));
-    let no_thread = |error: std::io::Error| Failure::new(OUTPUT, format!("cannot start a thread: {error}"));
+    let no_thread = |error: std::io::Error| Failure::new(NO_THREAD, format!("the system gives no thread: {error}"));
     watch(Arc::clone(&studio.watched), Arc::clone(&studio.bell), Arc::clone(&studio.quit)).map_err(no_thread)?;
     let painter = Arc::clone(&studio);
     let device = args.device.clone();
     let mut opened = Some(gpu);
     let mut open = move || -> Result<_, gpu::Error> {
-        let gpu = opened.take().map_or_else(|| device.open(), Ok)?;
+        let gpu = opened.take().map_or_else(|| device.open_with(true), Ok)?;
         Ok(gpu.map(|gpu| Arc::new(gpu.keeping_kernels().interactive())))
     };
     std::thread::Builder::new().name("studio".into()).spawn(move || painter.run(&mut open)).map_err(no_thread)?;
+    // All is there that can be refused: who reads this may open it.
+    outln!("{}", server.url());
     server.serve(studio).map_err(|error| Failure::new(OUTPUT, error.to_string()))
 }

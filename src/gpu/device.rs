@@ -146,7 +146,7 @@ pub struct Gpu {
     pub(super) queue: wgpu::Queue,
     /// Whether host and device share memory, so that a storage buffer can be mapped.
     pub(super) mappable: bool,
-    failure: Arc<Mutex<Option<String>>>,
+    failure: Arc<Mutex<Option<Failure>>>,
     /// Why nothing can be asked of it any more.
     end: OnceLock<String>,
     /// How long it may take to answer.
@@ -158,6 +158,31 @@ pub struct Gpu {
     /// Compiled kernels that are used again; `None` where every renderer compiles its own.
     kept: Option<Mutex<Kept>>,
 }
+
+/// What a device has reported.
+#[derive(Debug)]
+enum Failure {
+    /// What is asked for exceeds one of its limits.
+    Limit(String),
+    /// Anything else.
+    Broken(String),
+}
+
+impl Failure {
+    fn new(error: &wgpu::Error) -> Self {
+        let text = error.to_string();
+        match error {
+            // The last line names the limit, those before in which call of which object.
+            wgpu::Error::Validation { .. } if text.contains(" limit") => {
+                Self::Limit(text.lines().last().unwrap_or_default().trim().to_owned())
+            }
+            _ => Self::Broken(text),
+        }
+    }
+}
+
+/// Bytes of a uniform that every device must be able to bind: `Tiles` of `shaders/slots_tiles.wgsl`.
+const LEAST_UNIFORM: u64 = 1 << 16;
 
 /// Compiled kernels, those used last at the end.
 type Kept = Vec<(Specialisation, Arc<Stages>)>;
@@ -231,6 +256,12 @@ impl Gpu {
         if !features.contains(wgpu::Features::PASSTHROUGH_SHADERS) {
             return Err(Error::NoDevice(format!("{info} takes no SPIR-V, which alone says how to round")));
         }
+        let uniform = adapter.limits().max_uniform_buffer_binding_size;
+        if uniform < LEAST_UNIFORM {
+            let limit = "max_uniform_buffer_binding_size (Vulkan's maxUniformBufferRange)";
+            let why = format!("{limit} is {uniform} bytes, and the kernels need {LEAST_UNIFORM}");
+            return Err(Error::NoDevice(format!("{info} cannot render: {why}")));
+        }
         let request = adapter.request_device(&wgpu::DeviceDescriptor {
             label: None,
             required_features: features,
@@ -243,9 +274,9 @@ impl Gpu {
 
         let failure = Arc::new(Mutex::new(None));
         let slot = Arc::clone(&failure);
-        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| note(&slot, error.to_string())));
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| note(&slot, Failure::new(&error))));
         let slot = Arc::clone(&failure);
-        device.set_device_lost_callback(move |_, message| note(&slot, message));
+        device.set_device_lost_callback(move |_, message| note(&slot, Failure::Broken(message)));
         let mappable = features.contains(wgpu::Features::MAPPABLE_PRIMARY_BUFFERS);
         let tuned = DeviceTuning::of(&info);
         let kernel_cache = keeps_kernels.then(|| KernelCache::open(&device, &adapter.get_info())).flatten();
@@ -365,7 +396,8 @@ impl Gpu {
         let value = action();
         match self.failure.lock().unwrap_or_else(PoisonError::into_inner).take() {
             None => Ok(value),
-            Some(message) => Err(Error::Lost(format!("{what} on {}: {message}", self.info))),
+            Some(Failure::Limit(why)) => Err(Error::NoDevice(format!("{} is too small for {what}: {why}", self.info))),
+            Some(Failure::Broken(why)) => Err(Error::Lost(format!("{what} on {}: {why}", self.info))),
         }
     }
 
@@ -442,8 +474,8 @@ impl Gpu {
     }
 }
 
-fn note(slot: &Mutex<Option<String>>, message: String) {
-    slot.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(message);
+fn note(slot: &Mutex<Option<Failure>>, failure: Failure) {
+    slot.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(failure);
 }
 
 /// The index of the device that `choice` and the environment mean.
@@ -452,7 +484,9 @@ fn choose<'a>(choice: &Choice, devices: impl Iterator<Item = &'a DeviceInfo>) ->
     if devices.is_empty() {
         return Err(Error::none_found());
     }
-    let listing = || devices.iter().map(|d| format!("\n  {}: {d}", d.index)).collect::<String>();
+    // The one that is meant may be left out.
+    let hidden = || super::diagnosis::hidden().iter().map(|d| format!("\n  -: {d}")).collect::<String>();
+    let listing = || devices.iter().map(|d| format!("\n  {}: {d}", d.index)).collect::<String>() + &hidden();
     let named = |name: &str, source: &str| -> Result<Vec<&DeviceInfo>, Error> {
         let found: Vec<_> = devices.iter().copied().filter(|device| device.matches(name)).collect();
         if found.is_empty() {
@@ -478,6 +512,10 @@ fn choose<'a>(choice: &Choice, devices: impl Iterator<Item = &'a DeviceInfo>) ->
                 Ok(name) if !name.is_empty() => named(&name, "WGPU_ADAPTER_NAME")?,
                 _ => devices.clone(),
             };
+            // Mesa's layer has put what the user has chosen first.
+            if super::drivers::is_device_chosen(std::env::vars_os().map(|(name, _)| name)) {
+                return candidates.first().map(|device| device.index).ok_or_else(Error::none_found);
+            }
             let low_power = wgpu::PowerPreference::from_env() == Some(wgpu::PowerPreference::LowPower);
             let best = candidates.iter().min_by_key(|device| device.rank(low_power));
             best.map(|device| device.index).ok_or_else(Error::none_found)

@@ -5,6 +5,12 @@ use std::ffi::OsString;
 use std::io::ErrorKind;
 use std::path::Path;
 
+/// Set to anything, this variable leaves out the layer of Mesa's with which users choose a device.
+pub const NO_CHOOSER: &str = "NODEVICE_SELECT";
+
+/// Beginnings of the variables that this layer obeys: it puts the device that is meant first, or leaves out all others.
+const CHOOSERS: [&str; 2] = ["MESA_VK_DEVICE_SELECT", "DRI_PRIME"];
+
 /// The Vulkan loader's list of drivers to leave out, by the names of their manifests. Loaders before 1.3.234 ignore it.
 pub const SWITCH: &str = "VK_LOADER_DRIVERS_DISABLE";
 
@@ -48,4 +54,42 @@ fn is_surely_empty(folder: &Path) -> bool {
         Ok(mut entries) => entries.next().is_none(),
         Err(error) => error.kind() == ErrorKind::NotFound,
     }
+}
+
+/// Whether the user has chosen a device by one of the variables, named by `variables`, that Mesa's layer obeys.
+pub fn is_device_chosen(variables: impl IntoIterator<Item = OsString>) -> bool {
+    let chooses = |name: OsString| CHOOSERS.iter().any(|choice| name.as_encoded_bytes().starts_with(choice.as_bytes()));
+    variables.into_iter().any(chooses)
+}
+
+/// What to install for a Vulkan device, on this system.
+pub(super) fn install_hint() -> &'static str {
+    match std::env::consts::OS {
+        "linux" => hint_for(&std::fs::read_to_string("/etc/os-release").unwrap_or_default()),
+        "macos" => "MoltenVK (`brew install molten-vk vulkan-loader`) brings Vulkan to macOS",
+        "windows" => "Vulkan comes with the driver of the graphics card: install that of its vendor",
+        _ => GENERAL_HINT,
+    }
+}
+
+const GENERAL_HINT: &str = "the Vulkan drivers of Mesa have a software device, called lavapipe";
+
+/// Likewise for the Linux that this file, `/etc/os-release`, describes.
+pub fn hint_for(os_release: &str) -> &'static str {
+    let field = |name: &str| {
+        let value = os_release.lines().find_map(|line| line.trim().strip_prefix(name)?.strip_prefix('='));
+        value.unwrap_or_default().trim_matches(['"', '\''])
+    };
+    // What it is before what it is like.
+    let names = [field("ID"), field("ID_LIKE")];
+    let hint = |name: &str| match name {
+        "debian" | "ubuntu" => Some("`apt install mesa-vulkan-drivers` brings Vulkan and a software device"),
+        "fedora" | "rhel" | "centos" => {
+            Some("`dnf install mesa-vulkan-drivers vulkan-loader` brings Vulkan and a software device")
+        }
+        "arch" => Some("`pacman -S vulkan-swrast vulkan-icd-loader` brings Vulkan and a software device"),
+        "alpine" => Some("`apk add mesa-vulkan-swrast vulkan-loader` brings Vulkan and a software device"),
+        _ => None,
+    };
+    names.iter().flat_map(|names| names.split_whitespace()).find_map(hint).unwrap_or(GENERAL_HINT)
 }

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::diagnosis::Diagnosis;
 use crate::misuse::Misuse;
 
 /// Why there is no picture from the GPU.
@@ -18,13 +19,9 @@ pub enum Error {
 }
 
 impl Error {
-    /// There is no Vulkan device at all.
+    /// There is no Vulkan device that can be used; why, the Vulkan loader is asked once more.
     pub fn none_found() -> Self {
-        Self::NoDevice(
-            "no Vulkan device was found. Debian's package mesa-vulkan-drivers has a software one; `--device cpu` renders \
-             without any"
-                .into(),
-        )
+        Self::NoDevice(Diagnosis::new().why_none())
     }
 }
 

@@ -3,6 +3,7 @@
 mod ahead;
 mod compute;
 mod device;
+mod diagnosis;
 pub mod drivers;
 mod echo;
 mod error;
@@ -28,6 +29,7 @@ mod upload;
 
 pub use ahead::Ahead;
 pub use device::{Choice, DeviceInfo, Gpu, list};
+pub use diagnosis::{Hidden, hidden};
 pub use echo::echo_layout;
 pub use error::Error;
 pub use pipeline::{SEE_SAMPLES, SEE_TILES, SHADE_PATHS, Specialisation, WALK_PATHS};

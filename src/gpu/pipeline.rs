@@ -1,12 +1,9 @@
 //! From effects to compiled kernels: the only place that sets the constants of `shaders/effects.wgsl`.
 
 use std::num::NonZeroU32;
-use std::panic::resume_unwind;
-use std::thread::{Builder, Scope, ScopedJoinHandle};
 
 use super::device::Gpu;
 use super::error::Error;
-use super::guard::guarded;
 use super::pack::material_vectors;
 use super::shader::{Kernel, Module, Places, Slots, Storage, Textures, Variant, Walk};
 use super::spirv::Parsed;
@@ -16,6 +13,7 @@ use crate::accel::Grid;
 use crate::effects::{Effect, EffectSet, Effects};
 use crate::scene::Scene;
 use crate::settings::{Settings, Specular};
+use crate::threads::at_once;
 use crate::tuning::Tuning;
 
 /// What a pipeline is specialised for.
@@ -261,43 +259,20 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
         if specialisation.variant().copies() { &[(24, vectors), (25, vectors)] } else { &[] };
     // A driver compiles a kernel on the thread that asks for it: side by side. The largest one goes here, since allocating is
     // cheapest on the main thread.
-    std::thread::scope(|scope| {
-        let see = || kernel(see_entry, &primary);
-        if !specialisation.keeps_paths() {
-            return Ok(Stages { see: see()?, bounce: None, resolve: resolve()? });
-        }
-        let see = spawned(scope, see);
-        let bounce = || -> Result<Bounce, Error> {
-            if let Walk::InTurn(_) = specialisation.walk {
-                let shade = spawned(scope, || kernel(SHADE_PATHS, &[(11, vectors), (22, words)]));
-                let walk = kernel(WALK_PATHS, &[&[(11, vectors), (23, Texels(1))][..], copies].concat())?;
-                Ok(Bounce { begin: between()?, walk, shade: Some(joined(shade)?) })
-            } else {
-                Ok(Bounce { begin: between()?, walk: kernel(WALK_PATHS, &[(11, vectors)])?, shade: None })
-            }
-        };
-        let (bounce, resolve) = (bounce(), resolve());
-        Ok(Stages { see: joined(see)?, bounce: Some(bounce?), resolve: resolve? })
-    })
-}
-
-/// What is compiled, on a thread of its own where one is to be had.
-enum Compiling<'scope> {
-    Beside(ScopedJoinHandle<'scope, Result<Stage, Error>>),
-    Done(Result<Stage, Error>),
-}
-
-fn spawned<'scope>(
-    scope: &'scope Scope<'scope, '_>,
-    compile: impl Fn() -> Result<Stage, Error> + Copy + Send + 'scope,
-) -> Compiling<'scope> {
-    let guard = move || guarded(compile).unwrap_or_else(|why| Err(Error::Lost(why)));
-    Builder::new().spawn_scoped(scope, guard).map_or_else(|_| Compiling::Done(compile()), Compiling::Beside)
-}
-
-fn joined(compiling: Compiling) -> Result<Stage, Error> {
-    match compiling {
-        Compiling::Beside(thread) => thread.join().unwrap_or_else(|panic| resume_unwind(panic)),
-        Compiling::Done(result) => result,
+    let see = || kernel(see_entry, &primary);
+    if !specialisation.keeps_paths() {
+        return Ok(Stages { see: see()?, bounce: None, resolve: resolve()? });
     }
+    let bounce = || -> Result<Bounce, Error> {
+        if let Walk::InTurn(_) = specialisation.walk {
+            let shade = || gpu.guarded(|| kernel(SHADE_PATHS, &[(11, vectors), (22, words)]));
+            let walk = || kernel(WALK_PATHS, &[&[(11, vectors), (23, Texels(1))][..], copies].concat());
+            let (shade, (walk, begin)) = at_once(shade, || (walk(), between()));
+            Ok(Bounce { begin: begin?, walk: walk?, shade: Some(shade?) })
+        } else {
+            Ok(Bounce { begin: between()?, walk: kernel(WALK_PATHS, &[(11, vectors)])?, shade: None })
+        }
+    };
+    let (see, (bounce, resolve)) = at_once(|| gpu.guarded(see), || (bounce(), resolve()));
+    Ok(Stages { see: see?, bounce: Some(bounce?), resolve: resolve? })
 }

@@ -95,8 +95,9 @@ impl Stage {
         let most = gpu.device.limits().max_storage_buffers_per_shader_stage;
         let buffers = bindings.iter().filter(|(_, access)| matches!(access, Access::Read | Access::ReadWrite)).count();
         if buffers > most as usize {
+            let limit = "max_storage_buffers_per_shader_stage";
             let message =
-                format!("{} has {most} storage buffers for a kernel, but {entry_point} uses {buffers}", gpu.info);
+                format!("{} is too small for {entry_point}: {limit} is {most}, and it uses {buffers}", gpu.info);
             return Err(Error::NoDevice(message));
         }
         let entries: Vec<_> = bindings.iter().map(entry).collect();

@@ -12,6 +12,8 @@ pub struct DeviceTuning {
     pub source: Source,
     /// Why a file that is there is not used.
     pub warning: Option<String>,
+    /// Why it is not known whether there is one.
+    closed: Option<String>,
     class: Class,
 }
 
@@ -19,12 +21,14 @@ impl DeviceTuning {
     /// The tuning for `info`.
     pub fn of(info: &DeviceInfo) -> Self {
         let class = Class::of(info.kind);
-        let of_class = |warning| Self { tuning: Tuning::of(class), source: Source::Class, warning, class };
+        let of_class =
+            |warning| Self { tuning: Tuning::of(class), source: Source::Class, warning, closed: None, class };
         match load(&info.name, &info.driver) {
             Kept::Nothing => of_class(None),
             Kept::Unusable(why) => of_class(Some(why)),
+            Kept::Closed(why) => Self { closed: Some(why), ..of_class(None) },
             Kept::Tuning(tuning, path) => match info.problem_with(&tuning) {
-                None => Self { tuning, source: Source::File(path), warning: None, class },
+                None => Self { tuning, source: Source::File(path), warning: None, closed: None, class },
                 Some(problem) => of_class(Some(format!("the tuning in {} is ignored: {problem}", path.display()))),
             },
         }
@@ -35,7 +39,10 @@ impl DeviceTuning {
         let class = self.class.name();
         let difference = self.tuning.difference(&Tuning::of(self.class));
         match (&self.source, difference.is_empty()) {
-            (Source::Class, _) => format!("that of {class} devices"),
+            (Source::Class, _) => match &self.closed {
+                None => format!("that of {class} devices"),
+                Some(why) => format!("that of {class} devices ({why})"),
+            },
             (Source::File(path), true) => format!("that of {class} devices, confirmed in {}", path.display()),
             (Source::File(path), false) => format!("{difference}; from {}", path.display()),
         }

@@ -37,8 +37,10 @@ pub enum Kept {
     Nothing,
     /// A tuning in a file.
     Tuning(Tuning, PathBuf),
-    /// A file that cannot be used; why, in words that name it.
+    /// A file that cannot be used, but can be made anew; why, in words that name it.
     Unusable(String),
+    /// A place that cannot be read; why, in words that name it. As a rule nothing can be kept there, which is no news at each run.
+    Closed(String),
 }
 
 /// The file for the device of this name with this driver.
@@ -64,7 +66,9 @@ fn read(path: &Path, device: &str, driver: &str) -> Kept {
     let text = match std::fs::read_to_string(path) {
         Ok(text) => text,
         Err(error) if error.kind() == ErrorKind::NotFound => return Kept::Nothing,
-        Err(error) => return unusable(error.to_string()),
+        // What is no text is a file that was damaged.
+        Err(error) if error.kind() == ErrorKind::InvalidData => return unusable(error.to_string()),
+        Err(error) => return Kept::Closed(format!("{} cannot be read: {error}", path.display())),
     };
     let file: File = match serde_json::from_str(&text) {
         Ok(file) => file,

@@ -84,6 +84,8 @@ struct State {
     /// Number and size of each message that is not acknowledged.
     unacknowledged: VecDeque<(u32, usize)>,
     closed: bool,
+    /// The version of the wishes whose picture has failed.
+    failed: Option<u64>,
 }
 
 impl Desk {
@@ -100,6 +102,7 @@ impl Desk {
             waiting: VecDeque::new(),
             unacknowledged: VecDeque::new(),
             closed: false,
+            failed: None,
         };
         Self { state: Mutex::new(state), laid_down: Notify::new() }
     }
@@ -152,6 +155,22 @@ impl Desk {
     /// The scene has changed.
     pub(super) fn set_range(&self, range: Range) {
         lock(&self.state).range = range;
+    }
+
+    /// The picture of these wishes has failed: it is not tried again until they change, or the scene does.
+    pub(super) fn give_up(&self, version: u64) {
+        lock(&self.state).failed = Some(version);
+    }
+
+    /// What has failed may be tried again.
+    pub(super) fn forgive(&self) {
+        lock(&self.state).failed = None;
+    }
+
+    /// Whether the picture of the newest wishes has failed.
+    pub(super) fn has_failed(&self) -> bool {
+        let state = lock(&self.state);
+        state.failed == Some(state.version)
     }
 
     /// Whether the page has any errand.

@@ -22,7 +22,7 @@ use crate::gpu;
 use crate::gpu::Gpu;
 use crate::limits;
 use crate::precision::{Selection, Tier};
-use crate::scene::{Names, Scene};
+use crate::scene::{Names, Scene, Window};
 use crate::settings::Settings;
 use crate::tiles::TILE;
 use sketching::Sampled;
@@ -232,7 +232,7 @@ impl<'g> Easel<'g> {
     pub(super) fn wants_a_turn(&self) -> bool {
         let unfinished = || self.pass.is_some() || self.subject.as_ref().is_some_and(|s| !s.to_come.is_empty());
         let wanted = self.is_behind() || unfinished() || self.tell || self.measurement.is_some() || self.lacks_sketch();
-        (wanted || self.desk.has_errands()) && self.desk.is_open() && !self.desk.is_closed()
+        (wanted || self.desk.has_errands()) && self.desk.is_open() && !self.desk.is_closed() && !self.desk.has_failed()
     }
 
     /// Does a little: some tens of milliseconds, unless kernels are compiled. Only a lost device is an error.
@@ -582,17 +582,18 @@ fn coarse_engine<'g, O: Output>(
 ) -> Result<(Engine<'g, O>, (u32, u32)), gpu::Error> {
     with_size(scene, size, |scene| {
         let (width, height) = (size.0.div_ceil(step), size.1.div_ceil(step));
-        let window = scene.window;
-        // The window reaches as far as its pixels, which may be beyond the picture.
-        let part = |count: u32, whole: u32| f64::from(count * step) / f64::from(whole);
+        // The window reaches as far as its pixels, which may be beyond the picture. Its own size may be beyond numbers.
+        let end = |from: f64, to: f64, count: u32, whole: u32| {
+            let part = f64::from(count * step) / f64::from(whole);
+            (from * (1.0 - part) + to * part).clamp(f64::MIN, f64::MAX)
+        };
         if step > 1 {
-            scene.window.right = window.left + (window.right - window.left) * part(width, size.0);
-            scene.window.bottom = window.top - (window.top - window.bottom) * part(height, size.1);
+            let window = scene.window;
+            scene.window.right = end(window.left, window.right, width, size.0);
+            scene.window.bottom = end(window.top, window.bottom, height, size.1);
         }
         (scene.width, scene.height) = (width, height);
-        let engine = Engine::with(backend, scene, settings, effects, options);
-        scene.window = window;
-        Ok((engine?, (width, height)))
+        Ok((Engine::with(backend, scene, settings, effects, options)?, (width, height)))
     })
 }
 
@@ -629,13 +630,20 @@ fn largest(scene: &Scene, settings: &Settings, count: usize) -> Scene {
     }
 }
 
-/// Lets `action` see the scene with this size of its picture. A scene may be too large to be copied for that.
+/// Lets `action` see the scene with this size of its picture, and change that and the window; however it ends, the scene has its
+/// own again. A scene may be too large to be copied for that.
 fn with_size<T>(scene: &mut Scene, size: (u32, u32), action: impl FnOnce(&mut Scene) -> T) -> T {
-    let own = (scene.width, scene.height);
-    (scene.width, scene.height) = size;
-    let result = action(scene);
-    (scene.width, scene.height) = own;
-    result
+    struct Lent<'s>(&'s mut Scene, (u32, u32), Window);
+    impl Drop for Lent<'_> {
+        fn drop(&mut self) {
+            (self.0.width, self.0.height) = self.1;
+            self.0.window = self.2;
+        }
+    }
+    let (own, window) = ((scene.width, scene.height), scene.window);
+    let lent = Lent(scene, own, window);
+    (lent.0.width, lent.0.height) = size;
+    action(lent.0)
 }
 
 /// `size`, halved until a page can show and keep it.

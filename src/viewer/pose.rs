@@ -48,6 +48,13 @@ impl Pose {
         Self { eye: DVec3::ZERO, look_at: DVec3::new(0.0, 0.0, -range.distance), up: DVec3::Y }
     }
 
+    /// An eye that looks along −z, at what is as far away as the spheres are from the file's eye.
+    pub fn ahead(eye: DVec3, up: DVec3, range: Range) -> Self {
+        // So near to an eye that is far away, there may be no other number.
+        let distance = range.distance.max(1e-6 * eye.z.abs());
+        Self { eye, look_at: eye - DVec3::Z * distance, up }
+    }
+
     /// Whether the picture is that of the file's camera.
     pub fn is_of_file(&self) -> bool {
         self.view() == Ok(View::FILE)
@@ -93,22 +100,23 @@ impl Pose {
     /// Multiplies the distance to what it looks at by `factor`.
     #[must_use]
     pub fn zoomed(self, factor: f64, range: Range) -> Self {
-        let arm = self.eye - self.look_at;
-        let length = (arm.length() * factor).clamp(range.distance * 1e-4, range.distance * 1e4);
+        let (arm, unit) = in_unit(self.eye - self.look_at);
+        let length = (arm.length() * factor * unit).clamp(range.distance * 1e-4, range.distance * 1e4);
         self.accepted(Self { eye: self.look_at + arm.normalize_or_zero() * length, ..self })
     }
 
     /// `arm` rotated around the upward direction and then towards it.
     fn rotated(&self, arm: DVec3, around: f64, upwards: f64) -> DVec3 {
-        let up = self.up.normalize_or(DVec3::Y);
+        let up = in_unit(self.up).0.normalize_or(DVec3::Y);
+        let (arm, unit) = in_unit(arm);
         let arm = DQuat::from_axis_angle(up, around) * arm;
         let sideways = arm.cross(up).normalize_or_zero();
         if sideways == DVec3::ZERO {
-            return arm;
+            return arm * unit;
         }
         let angle = arm.angle_between(up);
         let wanted = (angle - upwards).clamp(LEAST_ANGLE, std::f64::consts::PI - LEAST_ANGLE);
-        DQuat::from_axis_angle(sideways, angle - wanted) * arm
+        DQuat::from_axis_angle(sideways, angle - wanted) * arm * unit
     }
 
     /// `other` where it is a view within reach, else this one.
@@ -126,4 +134,10 @@ impl Pose {
         let vector = |v: DVec3| format!("{:?},{:?},{:?}", v.x, v.y, v.z);
         format!("--eye={} --look-at={} --up={}", vector(self.eye), vector(self.look_at), vector(self.up))
     }
+}
+
+/// `v` in a unit of its own length, so that squares are in range, and that unit.
+fn in_unit(v: DVec3) -> (DVec3, f64) {
+    let unit = v.abs().max_element();
+    if unit > 0.0 { (v / unit, unit) } else { (v, 1.0) }
 }

@@ -1,7 +1,8 @@
 //! HTTP and WebSocket: the page, and the way between a page and its desk.
 
-use std::net::{IpAddr, SocketAddr};
-use std::sync::Arc;
+use std::collections::VecDeque;
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
+use std::sync::{Arc, LazyLock};
 use std::time::Duration;
 
 use axum::Router;
@@ -10,16 +11,35 @@ use axum::extract::{Path, State};
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{Html, IntoResponse, Response};
 use axum::routing::get;
-use tokio::net::TcpListener;
-use tokio::time::{Instant, interval, timeout};
+use base64::prelude::{BASE64_STANDARD, Engine as _};
+use hyper::server::conn::http1;
+use hyper_util::rt::TokioIo;
+use hyper_util::service::TowerToHyperService;
+use sha2::{Digest, Sha256};
+use tokio::net::{TcpListener, TcpStream};
+use tokio::task::AbortHandle;
+use tokio::time::{Instant, interval, sleep, timeout};
 
 use super::desk::{Desk, Outgoing};
 use super::studio::Studio;
 
 const PAGE: &str = include_str!("page.html");
 /// What the page may do: nothing but what is in it, and its own WebSocket.
-const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src blob: data:; \
-                      connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+static POLICY: LazyLock<String> = LazyLock::new(|| {
+    format!(
+        "default-src 'none'; script-src 'sha256-{}'; style-src 'unsafe-inline'; img-src blob: data:; \
+         connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+        BASE64_STANDARD.encode(Sha256::digest(script().replace("\r\n", "\n")))
+    )
+});
+/// Connections at once whose request is not answered yet, whoever they are from; one more ends the oldest of them.
+const MAX_VISITORS: usize = 64;
+/// So long a request and its answer may take. A WebSocket is no visit any more: it has limits of its own.
+const VISIT: Duration = Duration::from_secs(10);
+/// Bytes of the head of a request at the most.
+const MAX_HEAD: usize = 16 << 10;
+/// Where the system has no room for another connection, one may go meanwhile.
+const FULL: Duration = Duration::from_millis(50);
 /// Bytes of a message from a page at the most.
 const MAX_MESSAGE: usize = 16 << 10;
 /// A page from which nothing comes for so long, not even an answer to a ping, is gone.
@@ -98,7 +118,8 @@ impl Server {
 
     /// The page's address.
     pub fn url(&self) -> String {
-        format!("http://{}/{}/", self.address, self.access.token)
+        let host = SocketAddr::new(reachable(self.address.ip()), self.address.port());
+        format!("http://{host}/{}/", self.access.token)
     }
 
     /// Serves pages for as long as the program runs.
@@ -113,9 +134,62 @@ impl Server {
             let shared = Shared { studio, access: self.access };
             let router =
                 Router::new().route("/{token}/", get(page)).route("/{token}/ws", get(connect)).with_state(shared);
-            axum::serve(listener, router).await
+            receive(listener, router).await;
+            Ok(())
         })
     }
+}
+
+/// The inline script of the page, the only one that may run.
+fn script() -> &'static str {
+    let after = PAGE.split_once("<script>").map_or("", |(_, after)| after);
+    after.split_once("</script>").map_or("", |(script, _)| script)
+}
+
+/// Where a server that listens at `ip` is found: one that listens everywhere at the address that this machine has towards others.
+fn reachable(ip: IpAddr) -> IpAddr {
+    if !ip.is_unspecified() {
+        return ip;
+    }
+    // Nothing is sent. These addresses belong to nobody: they stand for any.
+    let (elsewhere, alone) = match ip {
+        IpAddr::V4(_) => ("192.0.2.1:9", IpAddr::V4(Ipv4Addr::LOCALHOST)),
+        IpAddr::V6(_) => ("[2001:db8::1]:9", IpAddr::V6(Ipv6Addr::LOCALHOST)),
+    };
+    let own = || {
+        let socket = UdpSocket::bind((ip, 0))?;
+        socket.connect(elsewhere)?;
+        socket.local_addr()
+    };
+    own().map(|own| own.ip()).ok().filter(|own| !own.is_unspecified()).unwrap_or(alone)
+}
+
+/// Lets visitors in, for ever. Strangers can always come, and neither hold a place for long nor keep others out.
+async fn receive(listener: TcpListener, router: Router) {
+    let mut visitors: VecDeque<AbortHandle> = VecDeque::new();
+    loop {
+        let Ok((stream, _)) = listener.accept().await else {
+            sleep(FULL).await;
+            continue;
+        };
+        visitors.retain(|visitor| !visitor.is_finished());
+        if visitors.len() == MAX_VISITORS
+            && let Some(oldest) = visitors.pop_front()
+        {
+            oldest.abort();
+        }
+        visitors.push_back(tokio::spawn(visit(stream, router.clone())).abort_handle());
+    }
+}
+
+/// Answers one connection.
+async fn visit(stream: TcpStream, router: Router) {
+    let service = TowerToHyperService::new(router);
+    let mut http = http1::Builder::new();
+    http.max_buf_size(MAX_HEAD);
+    let connection = http.serve_connection(TokioIo::new(stream), service).with_upgrades();
+    // Whoever breaks off or is too slow has had enough.
+    let _ = timeout(VISIT, connection).await;
 }
 
 async fn page(State(shared): State<Shared>, Path(token): Path<String>, headers: HeaderMap) -> Response {
@@ -123,7 +197,7 @@ async fn page(State(shared): State<Shared>, Path(token): Path<String>, headers: 
         return StatusCode::FORBIDDEN.into_response();
     }
     let headers = [
-        (header::CONTENT_SECURITY_POLICY, POLICY),
+        (header::CONTENT_SECURITY_POLICY, POLICY.as_str()),
         (header::REFERRER_POLICY, "no-referrer"),
         (header::CACHE_CONTROL, "no-store"),
         (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),

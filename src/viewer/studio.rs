@@ -1,5 +1,7 @@
 //! The one thread that renders, for all pages in turn.
 
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -36,6 +38,8 @@ pub struct Studio {
     start: Wishes,
     range: Mutex<Range>,
     desks: Mutex<Vec<Arc<Desk>>>,
+    /// The page that is rendered for, and the version of its wishes.
+    turn: Mutex<Option<(Arc<Desk>, u64)>>,
 }
 
 impl Studio {
@@ -49,6 +53,7 @@ impl Studio {
             start,
             range: Mutex::new(range),
             desks: Mutex::default(),
+            turn: Mutex::default(),
         }
     }
 
@@ -65,35 +70,55 @@ impl Studio {
         Some(desk)
     }
 
-    /// Renders until `quit`. Opens the device again where it was lost.
+    /// Renders until `quit`. Opens the device again where it was lost, or where anything on the way to a picture has panicked.
     pub fn run(&self, open: &mut Opener) {
         let Some(mut scene) = lock(&self.watched.stage).fresh.take() else { return };
         let mut pace = Pace::default();
+        // Before the first page comes its kernels can be compiled.
+        let rehearsal = Arc::new(Desk::new(self.start.clone(), *lock(&self.range)));
         while !self.quit.load(Ordering::Relaxed) {
-            let lost = match open() {
-                Ok(gpu) => self.work(gpu.as_deref(), &mut scene, &mut pace),
-                Err(error) => Err(error),
-            };
-            if let Err(error) = lost {
-                for desk in lock(&self.desks).iter().filter(|desk| desk.is_open()) {
-                    desk.send_words(serde_json::json!({ "is": "lost", "why": error.to_string() }));
-                }
-                self.bell.wait(RETRY);
+            let work = || self.work(open()?.as_deref(), &mut scene, &mut pace, &rehearsal);
+            // All that was in the making goes with the device; what stays is complete at each step.
+            match catch_unwind(AssertUnwindSafe(work)) {
+                Ok(Ok(())) => {}
+                Ok(Err(error)) => self.wait_for_device(&error.to_string()),
+                Err(panic) => self.give_up(words_of(&*panic)),
             }
         }
     }
 
+    /// Tells all pages why there is no device, and waits before the next attempt.
+    fn wait_for_device(&self, why: &str) {
+        for desk in lock(&self.desks).iter().filter(|desk| desk.is_open()) {
+            desk.send_words(serde_json::json!({ "is": "lost", "why": why }));
+        }
+        self.bell.wait(RETRY);
+    }
+
+    /// A panic is a fault of this program, and would come again with the same wishes: the page is told, and may wish anything else.
+    fn give_up(&self, why: &str) {
+        let Some((desk, version)) = lock(&self.turn).take() else { return self.wait_for_device(why) };
+        desk.give_up(version);
+        desk.send_words(serde_json::json!({ "is": "failed", "why": why }));
+    }
+
     /// Renders until the device is lost, or `quit`.
-    fn work(&self, gpu: Option<&Gpu>, scene: &mut Scene, pace: &mut Pace) -> Result<(), gpu::Error> {
+    fn work(
+        &self,
+        gpu: Option<&Gpu>,
+        scene: &mut Scene,
+        pace: &mut Pace,
+        rehearsal: &Arc<Desk>,
+    ) -> Result<(), gpu::Error> {
         let mut error = None;
         let mut readings = 0;
         let mut easels: Vec<Easel> = Vec::new();
-        // Before the first page comes its kernels can be compiled.
-        let rehearsal = Arc::new(Desk::new(self.start.clone(), *lock(&self.range)));
-        easels.push(Easel::new(Arc::clone(&rehearsal), gpu, *pace));
+        if !rehearsal.is_closed() {
+            easels.push(Easel::new(Arc::clone(rehearsal), gpu, *pace));
+        }
         while !self.quit.load(Ordering::Relaxed) {
             self.look_at_scene(scene, &mut readings, &mut error, &mut easels);
-            self.seat(&mut easels, &rehearsal, gpu, *pace);
+            self.seat(&mut easels, rehearsal, gpu, *pace);
             let busy = easels.iter().filter(|easel| easel.wants_a_turn()).count();
             if busy == 0 {
                 self.bell.wait(Duration::from_secs(1));
@@ -103,14 +128,17 @@ impl Studio {
             for easel in easels.iter_mut().filter(|easel| easel.wants_a_turn()) {
                 let pixels = MAX_PIXELS.saturating_sub(all - easel.pixels()).max(LEAST_PIXELS);
                 let scene_file = self.watched.path.to_string_lossy();
-                easel.turn(&mut Setting {
+                *lock(&self.turn) = Some((Arc::clone(&easel.desk), easel.desk.version()));
+                let turned = easel.turn(&mut Setting {
                     scene,
                     scene_file: &scene_file,
                     error: error.as_ref(),
                     busy,
                     pixels,
                     pages,
-                })?;
+                });
+                *lock(&self.turn) = None;
+                turned?;
                 *pace = easel.pace;
             }
             // One picture is enough of a rehearsal: its messages stay unread, so that it ends by itself.
@@ -134,9 +162,13 @@ impl Studio {
         if let Some(fresh) = fresh {
             *scene = fresh;
             *lock(&self.range) = Range::of(scene);
+            lock(&self.desks).iter().for_each(|desk| desk.forgive());
         }
         for easel in easels {
             easel.desk.set_range(*lock(&self.range));
+            if replaced {
+                easel.desk.forgive();
+            }
             easel.scene_changed(replaced);
         }
     }
@@ -154,4 +186,10 @@ impl Studio {
             }
         }
     }
+}
+
+/// What a panic says.
+pub(super) fn words_of(panic: &(dyn Any + Send)) -> &str {
+    let text = panic.downcast_ref::<&str>().copied();
+    text.or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("for a reason without words")
 }

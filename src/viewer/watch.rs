@@ -1,5 +1,6 @@
 //! The scene file, read again whenever it changes.
 
+use std::panic::catch_unwind;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
@@ -8,6 +9,7 @@ use std::time::{Duration, SystemTime};
 use serde::Serialize;
 
 use super::desk::{Bell, lock};
+use super::studio::words_of;
 use crate::scene::{Scene, Severity, parse};
 
 /// Time between two looks at the file.
@@ -52,7 +54,10 @@ impl Watched {
     /// Reads the file again.
     fn read(&self) {
         let name = self.path.display().to_string();
-        let result = read(&name, &self.path);
+        // Whatever is in the file, the next one is looked at.
+        let result = catch_unwind(|| read(&name, &self.path)).unwrap_or_else(|panic| {
+            Err(Reading { line: 0, text: format!("the scene {name} cannot be read: {}", words_of(&*panic)) })
+        });
         let mut stage = lock(&self.stage);
         stage.readings += 1;
         match result {

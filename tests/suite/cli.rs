@@ -5,7 +5,7 @@ use std::process::{Command, Output, Stdio};
 
 use tempfile::TempDir;
 
-use crate::support::gpu;
+use crate::support::{gpu, say_skipped};
 
 const SCENE: &str = "NEAR 1\nLEFT -1\nRIGHT 1\nBOTTOM -1\nTOP 1\nRES 16 8\nSPHERE s 0 0 -5 2 2 2 1 0 0 1 0 0 0 1\n\
                      AMBIENT 1 1 1\nBACK 0 0 1\nOUTPUT out.ppm\n";
@@ -85,7 +85,9 @@ fn without_output_the_scene_names_the_picture() {
 fn renders_without_a_driver_on_the_reference_and_says_so() {
     let place = Place::new(SCENE);
     let output = place.run_without_driver("scene.txt");
-    assert_exit(&output, 0, "no Vulkan device was found, rendering on the CPU reference");
+    assert_exit(&output, 0, "rendering on the CPU reference: no Vulkan device");
+    // Why there is none: the one driver that was asked for is not there.
+    assert_exit(&output, 0, "no-driver.json");
     assert_exit(&output, 0, "on the CPU reference (f64)");
     assert_eq!(place.files(), ["out.ppm", "scene.txt"]);
 }
@@ -93,9 +95,9 @@ fn renders_without_a_driver_on_the_reference_and_says_so() {
 #[test]
 fn a_required_device_never_falls_back() {
     let place = Place::new(SCENE);
-    assert_exit(&place.run_without_driver("render --device gpu scene.txt"), 4, "no Vulkan device was found");
-    assert_exit(&place.run_without_driver("render --device 0 scene.txt"), 4, "no Vulkan device was found");
-    assert_exit(&place.run_without_driver("devices"), 4, "mesa-vulkan-drivers");
+    assert_exit(&place.run_without_driver("render --device gpu scene.txt"), 4, "no-driver.json");
+    assert_exit(&place.run_without_driver("render --device 0 scene.txt"), 4, "no-driver.json");
+    assert_exit(&place.run_without_driver("devices"), 4, "`--device cpu` renders without any");
     assert_eq!(place.files(), ["scene.txt"]);
 }
 
@@ -327,7 +329,7 @@ fn stress_lists_judges_and_fails_where_a_promise_is_broken() {
     assert!(String::from_utf8(list.stdout).unwrap().contains("terminator"));
     assert_exit(&place.run("stress --class no-such-class"), 2, "");
     assert_exit(&place.run("stress --precision exact"), 2, "");
-    assert_exit(&place.run_without_driver("stress --count 100"), 4, "no Vulkan device was found");
+    assert_exit(&place.run_without_driver("stress --count 100"), 4, "no Vulkan device");
 
     let Some(_gpu) = gpu("stress_lists_judges_and_fails_where_a_promise_is_broken") else { return };
     let output = place.run("stress --count 20000 --class far --precision fast --json");
@@ -403,4 +405,74 @@ fn scenes_beyond_the_range_of_numbers_are_refused() {
         assert_exit(&place.run("render scene.txt --explain -o d.ppm"), 0, "brightness");
         assert_eq!(place.files(), ["c.ppm", "d.ppm", "scene.txt"]);
     }
+}
+
+/// Caches are a convenience: where there is no place for them, nothing is said and nothing is left behind.
+#[test]
+fn a_cache_folder_that_cannot_be_used_is_no_news() {
+    let Some(gpu) = gpu("a_cache_folder_that_cannot_be_used_is_no_news") else { return };
+    let place = Place::new(SCENE);
+    let run = |variables: &[(&str, &str)]| {
+        let arguments = format!("render -q --precision robust --device {} scene.txt", gpu.info.index);
+        let mut command = place.command(&arguments);
+        command.env_remove("XDG_CACHE_HOME").env_remove("HOME").env("TRUERAY_KERNEL_CACHE", "1");
+        // Mesa has a cache of its own in the same folder.
+        command.env("MESA_SHADER_CACHE_DISABLE", "true");
+        command.envs(variables.iter().copied()).output().unwrap()
+    };
+    for variables in [
+        &[("HOME", "")][..],
+        &[("HOME", ".")],
+        &[("HOME", "folder")],
+        &[("XDG_CACHE_HOME", "folder"), ("HOME", "folder")],
+        &[("XDG_CACHE_HOME", ""), ("HOME", "folder")],
+        // A file, or something in one, is no folder.
+        &[("XDG_CACHE_HOME", "/dev/null")],
+        &[("HOME", "/dev/null")],
+    ] {
+        let output = run(variables);
+        assert_exit(&output, 0, "");
+        assert!(output.stderr.is_empty(), "{variables:?}: {}", String::from_utf8_lossy(&output.stderr));
+        assert_eq!(place.files(), ["out.ppm", "scene.txt"], "{variables:?}");
+    }
+}
+
+/// A thread of which the system has none is no reason to panic: there are fewer, or it is said.
+#[cfg(target_os = "linux")]
+#[test]
+fn few_threads_are_enough() {
+    let place = Place::new(SCENE);
+    let mut many = place.command("render --device cpu scene.txt");
+    let start = std::time::Instant::now();
+    assert_exit(&many.env("RAYON_NUM_THREADS", "100000").output().unwrap(), 0, "out.ppm");
+    assert!(start.elapsed().as_secs() < 30);
+
+    // The system's limit is for users, not for root: another user's command of the same program, with as few threads as this.
+    let folder = place.path().join("nobody");
+    let program = place.path().join("program");
+    std::fs::create_dir(&folder).unwrap();
+    std::fs::write(folder.join("scene.txt"), SCENE).unwrap();
+    std::fs::copy(env!("CARGO_BIN_EXE_trueray"), &program).unwrap();
+    for path in [place.path(), &folder] {
+        std::fs::set_permissions(path, std::os::unix::fs::PermissionsExt::from_mode(0o777)).unwrap();
+    }
+    let limited = |threads: u32, arguments: &str| {
+        let mut command = Command::new("setpriv");
+        command.args(["--reuid=54321", "--regid=54321", "--clear-groups", "prlimit", &format!("--nproc={threads}")]);
+        command.arg(&program).args(arguments.split_whitespace()).current_dir(&folder).stdin(Stdio::null());
+        command.env("HOME", "/").output()
+    };
+    let can = limited(100, "check scene.txt").is_ok_and(|output| output.status.success());
+    if !can {
+        return say_skipped("few_threads_are_enough", "this user cannot be limited");
+    }
+    for threads in 1..8 {
+        let output = limited(threads, "render --device cpu scene.txt").unwrap();
+        assert_exit(&output, 0, "out.ppm");
+        let output = limited(threads, "render scene.txt").unwrap();
+        let code = output.status.code().unwrap();
+        assert!(code == 0 || code == 7, "{threads} threads");
+        assert_exit(&output, code, if code == 0 { "out.ppm" } else { "the system refuses threads" });
+    }
+    assert_exit(&limited(1, "view --device cpu scene.txt").unwrap(), 7, "the system gives no thread");
 }

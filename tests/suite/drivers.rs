@@ -88,3 +88,78 @@ fn compiled_kernels_are_kept_and_a_damaged_file_is_told_and_replaced() {
         assert_eq!(std::fs::read(file).unwrap(), kept);
     }
 }
+
+/// Whatever keeps a driver from being there is named, and the file in question with it.
+#[test]
+fn what_fails_on_the_way_to_a_device_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        path
+    };
+    let manifest = file(
+        "missing.json",
+        r#"{"file_format_version":"1.0.0","ICD":{"library_path":"/nowhere/lib-of-no-driver.so","api_version":"1.3.0"}}"#,
+    );
+    let torn = file("torn.json", "{");
+    let nowhere = folder.path().join("nowhere.json");
+    for (manifest, part) in [(&manifest, "lib-of-no-driver.so"), (&torn, "torn.json"), (&nowhere, "nowhere.json")] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_trueray"));
+        command.arg("devices").env("VK_DRIVER_FILES", manifest).env("VK_ICD_FILENAMES", manifest);
+        let output = command.output().unwrap();
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(4), "{errors}");
+        assert!(errors.contains(part) && errors.contains("--device cpu"), "{errors}");
+    }
+    // A loader that is not one.
+    if cfg!(target_os = "linux") {
+        file("libvulkan.so.1", "no library");
+        let mut command = Command::new(env!("CARGO_BIN_EXE_trueray"));
+        let output = command.arg("devices").env("LD_LIBRARY_PATH", folder.path()).output().unwrap();
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(4), "{errors}");
+        assert!(errors.contains("the Vulkan loader cannot be loaded") && errors.contains("libvulkan.so.1"), "{errors}");
+        assert!(!errors.contains("no Vulkan device was found"), "{errors}");
+    }
+}
+
+#[test]
+fn the_hint_fits_the_system() {
+    for (text, part) in [
+        ("PRETTY_NAME=\"Debian GNU/Linux 12\"\nID=debian\n", "apt install mesa-vulkan-drivers"),
+        ("ID=linuxmint\nID_LIKE=\"ubuntu debian\"\n", "apt install"),
+        ("ID=fedora", "dnf install mesa-vulkan-drivers"),
+        ("ID=\"rocky\"\nID_LIKE=\"rhel centos fedora\"\n", "dnf install"),
+        ("NAME=Arch\nID=arch\n", "pacman -S vulkan-swrast"),
+        ("ID='alpine'\nVERSION_ID=3.20\n", "apk add mesa-vulkan-swrast"),
+        ("ID=plan9\n", "lavapipe"),
+        ("", "lavapipe"),
+    ] {
+        assert!(drivers::hint_for(text).contains(part), "{text}: {}", drivers::hint_for(text));
+    }
+}
+
+/// Mesa's layer is left out unless one of its variables is set; then it does what they say, here to list its devices.
+#[test]
+fn a_device_that_is_chosen_by_mesas_variables_is_obeyed() {
+    let chosen = |variables: &[&str]| drivers::is_device_chosen(variables.iter().map(OsString::from));
+    for variable in ["MESA_VK_DEVICE_SELECT", "MESA_VK_DEVICE_SELECT_FORCE_DEFAULT_DEVICE", "DRI_PRIME"] {
+        assert!(chosen(&["PATH", variable]), "{variable}");
+    }
+    assert!(!chosen(&["PATH", "NODEVICE_SELECT", "MESA_LOADER_DRIVER_OVERRIDE"]));
+
+    let layer = "/usr/share/vulkan/implicit_layer.d/VkLayer_MESA_device_select.json";
+    let test = "a_device_that_is_chosen_by_mesas_variables_is_obeyed";
+    if crate::support::gpu(test).is_none() || !Path::new(layer).exists() {
+        return crate::support::say_skipped(test, "no device, or Mesa's layer is not there");
+    }
+    let list = |choose: bool| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_trueray"));
+        command.arg("devices").env_remove(drivers::NO_CHOOSER).env_remove("DRI_PRIME");
+        let command = if choose { command.env("MESA_VK_DEVICE_SELECT", "list") } else { &mut command };
+        String::from_utf8(command.output().unwrap().stderr).unwrap()
+    };
+    assert!(list(true).contains("selectable devices"));
+    assert!(!list(false).contains("selectable devices"));
+}

@@ -190,10 +190,15 @@ fn what_is_kept_is_used_and_said_or_refused_aloud() {
             assert!(!errors.contains("workgroup 32"), "{errors}");
         }
     }
+    let quiet = format!("render -q scene.txt -o out.ppm {device}");
+    assert_eq!(run(cache, false, &quiet), (String::new(), String::new(), Some(0)));
     std::fs::remove_file(file).unwrap();
     std::fs::create_dir(file).unwrap();
     let (_, errors, code) = run(cache, false, &render);
     assert!(code == Some(0) && errors.contains(&path), "{errors}");
+    // What cannot be mended by the program is told whoever asks, and nobody else.
+    let plain = quiet.replace(" -q", "");
+    assert!(!run(cache, false, &plain).1.contains(&path));
     let (_, errors, code) = run(cache, false, &tune);
     assert!(code == Some(6) && errors.contains(&path), "{errors}");
 }
