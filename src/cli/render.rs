@@ -197,9 +197,7 @@ fn render_one(
     if args.explain || args.verbose {
         let sampling = choice.as_ref().map(Choice::explanation).unwrap_or_default();
         err!("{}{}{sampling}", explanation(&loaded.name, &effects), precision_explanation(&selection));
-        if let Some(gpu) = gpu {
-            explain_device(gpu);
-        }
+        explain_device(gpu);
     }
     let backend = gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, selection.tier));
 
@@ -343,7 +341,8 @@ fn say_cut(name: &str, cut: u64, device: &str) {
 }
 
 /// What the device brings of its own.
-fn explain_device(gpu: &Gpu) {
+fn explain_device(gpu: Option<&Gpu>) {
+    let Some(gpu) = gpu else { return };
     errln!("  tuning       {}", gpu.tuned().summary());
     if let Some(note) = gpu.kernel_cache_note() {
         errln!("  note         {note}");
