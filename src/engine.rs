@@ -22,6 +22,10 @@ pub use partial::{Filler, PartialPicture, render_partial};
 
 /// Bytes of one band of rows at the most, unless a single row of tiles takes more.
 const BAND_BYTES: usize = 16 << 20;
+/// Pixels of the first band, whose time nobody knows.
+const FIRST_BAND: usize = 1 << 19;
+/// About how long a band takes, in ms: whoever waits sees it come.
+const BAND_MS: f64 = 400.0;
 
 /// Where the time of a picture went.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
@@ -324,14 +328,21 @@ pub fn render_bands<E: From<gpu::Error>>(
 ) -> Result<u64, E> {
     let (width, height) = engine.size();
     let row_bytes = width as usize * 3;
-    let tile_rows = (BAND_BYTES / (row_bytes * TILE as usize)).max(1);
-    let band_rows = (tile_rows as u64 * u64::from(TILE)).min(u64::from(height)) as u32;
-    let mut rgb = vec![0; row_bytes * band_rows as usize];
-    let mut not_finite = 0;
-    for first in (0..height).step_by(band_rows as usize) {
-        let rgb = &mut rgb[..row_bytes * band_rows.min(height - first) as usize];
-        not_finite += engine.rows(first, rgb)?;
-        sink(Band { first, rgb })?;
+    // Bands are of whole tiles, so that none is rendered twice.
+    let tiles = |bytes: usize| (bytes / (row_bytes * TILE as usize)).max(1) as u32;
+    let most = tiles(BAND_BYTES);
+    let mut now = tiles(FIRST_BAND * 3).min(most);
+    let mut rgb = Vec::new();
+    let (mut first, mut not_finite) = (0, 0);
+    while first < height {
+        let rows = now.saturating_mul(TILE).min(height - first);
+        let (start, compile_ms) = (Instant::now(), engine.times().compile_ms);
+        rgb.resize(row_bytes * rows as usize, 0);
+        not_finite += engine.rows(first, &mut rgb)?;
+        let took = ms(start.elapsed()) - (engine.times().compile_ms - compile_ms);
+        sink(Band { first, rgb: &rgb })?;
+        first += rows;
+        now = (f64::from(now) * (BAND_MS / took.max(1e-3)).min(2.0)).clamp(1.0, f64::from(most)) as u32;
     }
     Ok(not_finite)
 }

@@ -6,6 +6,7 @@
 //! see each other; both read [`scene`], [`effects`], [`camera`], [`geometry`], [`accel`] and [`sampling`].
 
 pub mod accel;
+mod atomic;
 pub mod bench;
 pub mod brightness;
 mod cache;

@@ -35,6 +35,13 @@ pub struct Plan {
     pub cpu: bool,
 }
 
+impl Plan {
+    /// Sizes of a family's scenes.
+    pub(crate) fn sizes(&self, family: &Family) -> impl Iterator<Item = usize> {
+        family.sizes.iter().copied().filter(|&size| family.spheres(size) <= self.max_spheres)
+    }
+}
+
 /// What renders, and how.
 #[derive(Clone, Copy)]
 pub struct Subject<'a> {
@@ -159,27 +166,40 @@ pub fn bench(
     plan: &Plan,
     mut scene_done: impl FnMut(&Family, &SceneResult),
 ) -> Result<Bench, gpu::Error> {
-    let mut families = Vec::new();
-    for family in &plan.families {
-        let mut forecasts: Vec<_> = renderers(subject, plan).into_iter().map(Forecast::new).collect();
-        let mut scenes = Vec::new();
-        for &size in family.sizes.iter().filter(|&&size| family.spheres(size) <= plan.max_spheres) {
-            let result = measure_scene(subject, plan, family, size, &mut forecasts)?;
-            scene_done(family, &result);
-            scenes.push(result);
-        }
-        let growth = forecasts.iter().filter_map(|forecast| growth(forecast.renderer, &scenes)).collect();
-        let Family { name, summary, axis, .. } = **family;
-        families.push(FamilyResult { name, summary, axis, scenes, growth });
-    }
-    Ok(Bench {
+    watched(subject, plan, |_, family, scene| scene_done(family, scene))
+}
+
+/// Likewise; `scene_done` also hears of all that was measured so far.
+pub fn watched(
+    subject: &Subject,
+    plan: &Plan,
+    mut scene_done: impl FnMut(&Bench, &Family, &SceneResult),
+) -> Result<Bench, gpu::Error> {
+    let mut bench = Bench {
         device: subject.gpu.map(|gpu| gpu.info.clone()),
         cpu_threads: rayon::current_num_threads(),
         settings: *subject.settings,
         runs: plan.runs,
         seconds: plan.seconds,
-        families,
-    })
+        families: Vec::new(),
+    };
+    for family in &plan.families {
+        let mut forecasts: Vec<_> = renderers(subject, plan).into_iter().map(Forecast::new).collect();
+        let Family { name, summary, axis, .. } = **family;
+        let mut result = FamilyResult { name, summary, axis, scenes: Vec::new(), growth: Vec::new() };
+        for size in plan.sizes(family) {
+            let scene = measure_scene(subject, plan, family, size, &mut forecasts)?;
+            result.scenes.push(scene.clone());
+            result.growth = forecasts.iter().filter_map(|forecast| growth(forecast.renderer, &result.scenes)).collect();
+            bench.families.retain(|other| other.name != name);
+            bench.families.push(result.clone());
+            scene_done(&bench, family, &scene);
+        }
+        if result.scenes.is_empty() {
+            bench.families.push(result);
+        }
+    }
+    Ok(bench)
 }
 
 fn renderers(subject: &Subject, plan: &Plan) -> Vec<Renderer> {

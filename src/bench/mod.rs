@@ -11,7 +11,7 @@ mod tune;
 
 pub use families::{Axis, FAMILIES, Family};
 pub use fit::growth_exponent;
-pub use measure::{Bench, FamilyResult, Growth, Measured, Plan, Renderer, SceneResult, Subject, bench};
+pub use measure::{Bench, FamilyResult, Growth, Measured, Plan, Renderer, SceneResult, Subject, bench, watched};
 pub use report::html;
 pub use stages::{STAGES, Stage};
 pub use table::{csv, csv_columns, heads};

@@ -1,13 +1,17 @@
 //! `trueray bench`.
 
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::failure::{Failure, OK, OUTPUT};
-use super::files::{check_folder, command, save, save_json, seconds};
+use super::files::{command, save, save_json, seconds};
+use super::guard::Guard;
 use super::options::{DeviceOptions, PictureOptions};
 use super::output::{errln, out};
+use super::progress::{Progress, Style};
+use super::signals::{say_last, say_nothing};
 use super::tune::run_tune;
-use crate::bench::{FAMILIES, Family, Plan, Subject, bench, csv, heads, html};
+use crate::bench::{Bench, FAMILIES, Family, Plan, Subject, csv, heads, html, watched};
 
 /// Arguments of `trueray bench`.
 #[derive(Debug, clap::Args)]
@@ -45,6 +49,9 @@ pub(super) struct Args {
     /// Write everything as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+    /// How progress is shown on standard error
+    #[arg(long, value_enum, default_value_t = Style::Auto)]
+    progress: Style,
     #[command(flatten)]
     picture: PictureOptions,
     #[command(flatten)]
@@ -62,7 +69,7 @@ fn run_bench(args: &Args) -> Result<(), Failure> {
     let families = if args.families.is_empty() { FAMILIES.iter().collect() } else { args.families.clone() };
     if args.tune {
         let json = args.json.as_deref();
-        json.map_or(Ok(()), check_folder)?;
+        Guard::default().options([("--json", &args.json)])?;
         return run_tune(&args.picture, &args.device, args.max_spheres, args.runs as usize, json);
     }
     if args.list {
@@ -72,9 +79,7 @@ fn run_bench(args: &Args) -> Result<(), Failure> {
     if let Some(folder) = &args.write {
         return write_scenes(args, &families, folder);
     }
-    for path in [&args.report, &args.csv, &args.json].into_iter().flatten() {
-        check_folder(path)?;
-    }
+    Guard::default().options([("--report", &args.report), ("--csv", &args.csv), ("--json", &args.json)])?;
     let gpu = args.device.open()?;
     let settings = args.picture.settings()?;
     let subject = Subject {
@@ -98,18 +103,62 @@ fn run_bench(args: &Args) -> Result<(), Failure> {
         }
     };
     show(&heads());
-    let bench = bench(&subject, &plan, |family, scene| show(&scene.report(family)))?;
+    let files = Files { report: args.report.clone(), csv: args.csv.clone(), json: args.json.clone() };
+    let measured: Arc<Mutex<Option<Bench>>> = Arc::default();
+    let (last, last_files) = (Arc::clone(&measured), files.clone());
+    say_last(move || interrupted(lock(&last).as_ref(), &last_files));
+    let scenes = plan.families.iter().map(|family| plan.sizes(family).count()).sum::<usize>();
+    let mut done = 0;
+    let mut progress = Progress::new(args.progress, "bench");
+    let bench = watched(&subject, &plan, |bench, family, scene| {
+        *lock(&measured) = Some(bench.clone());
+        done += 1;
+        progress.pause(|| show(&scene.report(family)));
+        progress.set(done as f64 / scenes as f64);
+    })?;
+    progress.finish();
+    say_nothing();
     show(&format!("\n{}\n{}\n", bench.growth_report(), bench.head()));
-    if let Some(path) = &args.report {
-        save(path, &html(&bench, &command()))?;
+    files.write(&bench)
+}
+
+fn lock(measured: &Mutex<Option<Bench>>) -> MutexGuard<'_, Option<Bench>> {
+    measured.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Where the measurements go.
+#[derive(Debug, Clone)]
+struct Files {
+    report: Option<PathBuf>,
+    csv: Option<PathBuf>,
+    json: Option<PathBuf>,
+}
+
+impl Files {
+    fn write(&self, bench: &Bench) -> Result<(), Failure> {
+        if let Some(path) = &self.report {
+            save(path, &html(bench, &command()))?;
+        }
+        if let Some(path) = &self.csv {
+            save(path, &csv(bench))?;
+        }
+        if let Some(path) = &self.json {
+            save_json(path, &serde_json::json!({ "command": command(), "bench": bench }))?;
+        }
+        Ok(())
     }
-    if let Some(path) = &args.csv {
-        save(path, &csv(&bench))?;
+}
+
+/// Writes the scenes that are measured.
+fn interrupted(measured: Option<&Bench>, files: &Files) {
+    let Some(bench) = measured else {
+        errln!("trueray: interrupted before anything was measured");
+        return;
+    };
+    errln!("trueray: interrupted; the scenes that were measured are written");
+    if let Err(failure) = files.write(bench) {
+        failure.report();
     }
-    if let Some(path) = &args.json {
-        save_json(path, &serde_json::json!({ "command": command(), "bench": bench }))?;
-    }
-    Ok(())
 }
 
 fn list(families: &[&Family]) {

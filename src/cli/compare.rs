@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::failure::{DIFFERENT, Failure, OK, USAGE};
+use super::guard::Guard;
 use super::input::Input;
+use super::named::format_by_ending;
 use super::options::{DeviceOptions, PictureOptions, device_name, open_device};
 use super::output::{errln, out, outln};
 use crate::compare::{
@@ -14,7 +16,7 @@ use crate::compare::{
 use crate::cpu::{Judge, Reference};
 use crate::effects::Effects;
 use crate::engine::{Backend, Engine, render_picture};
-use crate::film::{Encoded, Format, Leniency, Picture, ReadError, Target};
+use crate::film::{Encoded, Leniency, Picture, ReadError, Target};
 use crate::gpu::Choice;
 use crate::scene::Scene;
 use crate::settings::Settings;
@@ -149,6 +151,9 @@ pub(super) fn run(args: &Args) -> u8 {
 }
 
 fn compare(args: &Args) -> Result<u8, Failure> {
+    let written = [("--heatmap", &args.heatmap), ("--three-wide", &args.three_wide)];
+    Guard::new(args.pictures.iter().chain(&args.scene)).options(written)?;
+    written.iter().filter_map(|(_, path)| path.as_deref()).try_for_each(|path| format_by_ending(path).map(|_| ()))?;
     let Subject { names: [a, b], pictures: [picture_a, picture_b], remarks, explanation, not_finite } =
         match (&args.scene, args.pictures.as_slice()) {
             (None, [a, b]) => two_pictures(args, a, b)?,
@@ -343,6 +348,6 @@ fn heat_bands(a: &Picture, b: &Picture) -> Result<Vec<HeatBand>, Failure> {
 }
 
 fn save(path: &Path, picture: &Picture) -> Result<(), Failure> {
-    let format = Format::from_extension(path).unwrap_or_default();
+    let format = format_by_ending(path)?;
     Ok(picture.save(&Target::from_argument(path.as_os_str()), format)?)
 }

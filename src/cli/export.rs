@@ -1,9 +1,10 @@
 //! `trueray export`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::failure::{Failure, OK, SCENE, USAGE};
-use super::files::{check_folder, save};
+use super::files::save;
+use super::guard::Guard;
 use super::input::Loaded;
 use super::options::PictureOptions;
 use super::output::errln;
@@ -34,9 +35,7 @@ pub(super) fn run(args: &Args) -> u8 {
 }
 
 fn run_export(args: &Args) -> Result<(), Failure> {
-    if args.output != Path::new("-") {
-        check_folder(&args.output)?;
-    }
+    Guard::new([&args.scene]).options([("--output", &Some(args.output.clone()))])?;
     let mut loaded = Loaded::read(&args.scene, false)?;
     args.picture.resize(&mut loaded.scene);
     let (scene, settings) = (&loaded.scene, args.picture.settings()?);
@@ -48,9 +47,6 @@ fn run_export(args: &Args) -> Result<(), Failure> {
         export(scene, &settings, &effects, args.to).map_err(|obstacles| refusal(args.to, &loaded, &obstacles))?;
     for warning in &export.warnings {
         errln!("trueray: {}: warning: {warning}", crate::words::visible(&loaded.name));
-    }
-    if loaded.is_scene_file(&args.output) {
-        return Err(Failure::new(super::failure::OUTPUT, "the export would overwrite its own scene file"));
     }
     save(&args.output, &export.text)
 }

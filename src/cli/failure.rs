@@ -42,6 +42,11 @@ impl Failure {
         Self { code, message: message.into() }
     }
 
+    /// The same, said of one of several inputs.
+    pub(super) fn of(self, name: &str) -> Self {
+        Self { message: format!("{name}: {}", self.message), ..self }
+    }
+
     /// Tells the user and returns the exit code.
     pub(super) fn report(&self) -> u8 {
         if !self.message.is_empty() {

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use serde::Serialize;
+
 use super::failure::{Failure, OUTPUT};
 use crate::film::Target;
 
@@ -19,9 +21,14 @@ pub(super) fn command() -> String {
     std::iter::once("trueray".to_owned()).chain(arguments).collect::<Vec<_>>().join(" ")
 }
 
+/// The folder that a file is in.
+pub(super) fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
 /// Whether a file can be there at all: what cannot be written should be known before minutes of measuring.
 pub(super) fn check_folder(path: &Path) -> Result<(), Failure> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = folder_of(path);
     if path.is_dir() || !folder.is_dir() {
         let what =
             if path.is_dir() { "that is a folder".into() } else { format!("there is no folder {}", folder.display()) };
@@ -36,9 +43,14 @@ pub(super) fn save(path: &Path, text: &str) -> Result<(), Failure> {
 }
 
 /// Writes JSON for people and programs.
-pub(super) fn save_json(path: &Path, document: &serde_json::Value) -> Result<(), Failure> {
+pub(super) fn save_json(path: &Path, document: &impl Serialize) -> Result<(), Failure> {
+    save(path, &json(document)?)
+}
+
+/// JSON for people and programs.
+pub(super) fn json(document: &impl Serialize) -> Result<String, Failure> {
     let text = serde_json::to_string_pretty(document).map_err(|error| Failure::new(OUTPUT, error.to_string()))?;
-    save(path, &(text + "\n"))
+    Ok(text + "\n")
 }
 
 /// A time in seconds on the command line.

@@ -90,13 +90,11 @@ impl Loaded {
 
     /// The file name that OUTPUT or, without one, the scene's own name gives.
     pub(super) fn output_name(&self) -> PathBuf {
-        let stem = || self.path.as_deref().and_then(Path::file_stem).unwrap_or(OsStr::new("trueray"));
-        self.scene.output.as_ref().map_or_else(|| Path::new(stem()).with_extension("ppm"), PathBuf::from)
-    }
-
-    /// Whether `target` is the scene file itself, which no picture may overwrite.
-    pub(super) fn is_scene_file(&self, target: &Path) -> bool {
-        let real = |path: &Path| path.canonicalize().ok();
-        self.path.as_deref().and_then(real).is_some_and(|path| Some(path) == real(target))
+        let own = || {
+            let mut name = self.path.as_deref().and_then(Path::file_stem).unwrap_or(OsStr::new("trueray")).to_owned();
+            name.push(".ppm");
+            name.into()
+        };
+        self.scene.output.as_ref().map_or_else(own, PathBuf::from)
     }
 }

@@ -9,12 +9,15 @@ mod environment;
 mod export;
 mod failure;
 mod files;
+mod guard;
 mod input;
+mod named;
 mod options;
 mod output;
 mod progress;
 mod render;
 mod sampling;
+mod signals;
 mod stats;
 mod stress;
 mod study;
@@ -40,7 +43,8 @@ use crate::{threads, words};
     args_conflicts_with_subcommands = true,
     subcommand_negates_reqs = true,
     arg_required_else_help = true,
-    after_help = "Exit codes: 0 ok, 2 usage, 3 scene, 4 no device, 5 device lost, 6 output, 7 no thread.\n\
+    after_help = "Exit codes: 0 ok, 2 usage, 3 scene, 4 no device, 5 device lost, 6 output, 7 no thread;\n\
+                  128 + n where signal n ended the run.\n\
                   compare: 0 same, 1 different, 2 trouble. stress: 1 a promise is broken.\n\
                   Environment: WGPU_ADAPTER_NAME, WGPU_POWER_PREF, WGPU_BACKEND, VK_DRIVER_FILES are honoured;\n\
                   TRUERAY_NO_TUNING=1 ignores what `bench --tune` has kept, TRUERAY_KERNEL_CACHE=0 the kernels that\n\
@@ -89,6 +93,9 @@ pub fn run() -> ExitCode {
     let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     color.choose();
     threads::make_pool();
+    if let Err(error) = signals::watch() {
+        output::errln!("trueray: signals are not watched, an interrupt may leave temporary files: {error}");
+    }
     let code = match cli.command {
         None => match meant_command(cli.render.first_scene()) {
             Some(failure) => failure.report(),

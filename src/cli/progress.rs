@@ -6,75 +6,134 @@ use std::time::{Duration, Instant};
 
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use serde::Serialize;
 
 /// How progress is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum Style {
-    /// A bar, where standard error is a terminal and rendering lasts
+    /// A bar, where standard error is a terminal and it takes longer than a second
     Auto,
     /// A bar
     Bar,
-    /// A line now and then
+    /// A line a second
     Lines,
-    /// A JSON object a line now and then
+    /// A JSON object a second, each in a line
     Json,
     /// Nothing
     None,
 }
 
-/// Pictures that are done sooner show no progress.
+/// What is done sooner shows no progress, but for the last event.
 const PATIENCE: Duration = Duration::from_secs(1);
 /// Time between two lines.
 const INTERVAL: Duration = Duration::from_secs(1);
+/// Steps of the bar.
+const STEPS: f64 = 1000.0;
 
-/// Shows how many rows of a picture are done.
+/// Shows how much of something is done.
 pub(super) struct Progress {
     style: Style,
     name: String,
-    rows: u32,
+    /// Rows of the picture, where it is one.
+    rows: Option<u32>,
     start: Instant,
     last_line: Instant,
     bar: Option<ProgressBar>,
 }
 
+/// A line of `json`.
+#[derive(Serialize)]
+struct Event<'a> {
+    scene: &'a str,
+    percent: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rows_done: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rows: Option<u32>,
+    seconds: f64,
+    seconds_left: Option<f64>,
+    finished: bool,
+}
+
 impl Progress {
-    pub(super) fn new(style: Style, name: &str, rows: u32) -> Self {
+    /// Of something that is not a picture.
+    pub(super) fn new(style: Style, name: &str) -> Self {
         let style = match style {
             Style::Auto if std::io::stderr().is_terminal() => Style::Bar,
             Style::Auto => Style::None,
             style => style,
         };
         let now = Instant::now();
-        Self { style, name: name.to_owned(), rows, start: now, last_line: now, bar: None }
+        Self { style, name: name.to_owned(), rows: None, start: now, last_line: now, bar: None }
     }
 
-    /// `done` rows are done.
-    pub(super) fn set(&mut self, done: u32) {
+    /// Of a picture with so many rows.
+    pub(super) fn of_rows(style: Style, name: &str, rows: u32) -> Self {
+        let mut progress = Self::new(style, name);
+        progress.rows = Some(rows);
+        progress
+    }
+
+    /// `part` of the whole is done, 1 being all.
+    pub(super) fn set(&mut self, part: f64) {
         if self.start.elapsed() < PATIENCE {
             return;
         }
         match self.style {
-            Style::Bar => self.bar().set_position(u64::from(done)),
+            Style::Bar => self.bar().set_position((part * STEPS) as u64),
             Style::Lines | Style::Json if self.last_line.elapsed() >= INTERVAL => {
                 self.last_line = Instant::now();
-                let (name, rows) = (&self.name, self.rows);
-                if self.style == Style::Json {
-                    errln!("{}", serde_json::json!({ "scene": name, "rows_done": done, "rows": rows }));
-                } else {
-                    errln!("{name}: {done} of {rows} rows");
-                }
+                self.line(part, false);
             }
+            _ => {}
+        }
+    }
+
+    /// All is done: the last event says so.
+    pub(super) fn finish(self) {
+        self.line(1.0, true);
+    }
+
+    /// Prints something else without a bar in its way.
+    pub(super) fn pause(&self, print: impl FnOnce()) {
+        match &self.bar {
+            Some(bar) => bar.suspend(print),
+            None => print(),
+        }
+    }
+
+    fn line(&self, part: f64, finished: bool) {
+        let seconds = self.start.elapsed().as_secs_f64();
+        let seconds_left = (part > 0.0).then(|| seconds * (1.0 / part - 1.0));
+        let (name, percent) = (&self.name, part * 100.0);
+        match (self.style, seconds_left) {
+            (Style::Json, _) => {
+                let tenths = |x: f64| (x * 10.0).round() / 10.0;
+                let event = Event {
+                    scene: name,
+                    percent: tenths(percent),
+                    rows_done: self.rows.map(|rows| (part * f64::from(rows)).round() as u32),
+                    rows: self.rows,
+                    seconds: tenths(seconds),
+                    seconds_left: seconds_left.map(tenths),
+                    finished,
+                };
+                errln!("{}", serde_json::json!(event));
+            }
+            (Style::Lines, _) if finished => errln!("{name}: 100 %, done in {seconds:.1} s"),
+            (Style::Lines, Some(left)) => errln!("{name}: {percent:.0} %, {left:.0} s left"),
+            (Style::Lines, None) => errln!("{name}: 0 %"),
             _ => {}
         }
     }
 
     fn bar(&mut self) -> &ProgressBar {
         self.bar.get_or_insert_with(|| {
-            let bar = ProgressBar::with_draw_target(Some(u64::from(self.rows)), ProgressDrawTarget::stderr());
+            let bar = ProgressBar::with_draw_target(Some(STEPS as u64), ProgressDrawTarget::stderr());
             let style = ProgressStyle::with_template("{msg} {wide_bar} {percent}% {eta}");
             bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
             bar.set_message(self.name.clone());
-            bar
+            bar.with_elapsed(self.start.elapsed())
         })
     }
 }

@@ -1,11 +1,13 @@
 //! `trueray render` and `trueray SCENE.txt`.
 
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use super::failure::{Failure, OK, OUTPUT, USAGE};
+use super::failure::{Failure, OK, USAGE};
+use super::files::{check_folder, json, save};
+use super::guard::Guard;
 use super::input::{Loaded, print_doubts};
+use super::named::{check_named, format_by_ending};
 use super::options::{DeviceOptions, PictureOptions, device_name};
 use super::output::{err, errln};
 use super::progress::{Progress, Style};
@@ -45,6 +47,9 @@ pub(super) struct Args {
     /// with more than 200,000 spheres. Where rounding does not explain a difference, there is no picture
     #[arg(long, value_name = "N")]
     verify: Option<Verify>,
+    /// Write whatever file OUTPUT names: also a hidden one, one without a picture's ending, or over a file that is no picture
+    #[arg(long)]
+    allow_any_output: bool,
     /// Print which effects are simulated, and why
     #[arg(long)]
     explain: bool,
@@ -75,34 +80,60 @@ pub(super) fn run(args: &Args) -> u8 {
     }
 }
 
-/// Renders every scene; a scene with errors does not keep the others from being rendered.
+/// A scene and where its picture goes.
+struct Job {
+    loaded: Loaded,
+    target: Target,
+    format: Format,
+}
+
+/// Renders every scene; a scene with errors does not keep the others from being rendered, files that are in each other's way do.
 fn render_all(args: &Args) -> Result<u8, Failure> {
     if args.scenes.len() > 1 && args.output.as_deref().is_some_and(|output| !output.is_dir()) {
         return Err(Failure::new(USAGE, "several scenes need a folder for -o, or none"));
     }
     let settings = args.picture.settings()?;
+    let mut guard = Guard::new(&args.scenes);
+    if let Some(path) = args.stats_json.as_deref().filter(|path| *path != Path::new("-")) {
+        check_folder(path)?;
+        guard.output("--stats-json", path)?;
+    }
     // Opening a device takes longer than reading most scenes: both at once, and what else can be done without one. The device is
     // opened here, since a driver's many allocations are cheaper on the thread whose heap grows in large steps.
     let start = Instant::now();
     let read = || {
-        let loaded = Loaded::read(&args.scenes[0], args.quiet);
-        let ahead = loaded.as_ref().ok().and_then(|loaded| args.ahead(&loaded.scene, &settings));
-        (loaded, ahead)
+        // What OUTPUT names has to be known of all before any is rendered.
+        let scenes: Vec<_> = args.scenes.iter().map(|path| Loaded::read(path, args.quiet)).collect();
+        let ahead = scenes[0].as_ref().ok().and_then(|loaded| args.ahead(&loaded.scene, &settings));
+        (scenes, ahead)
     };
-    let ((first, ahead), (gpu, open_time)) = at_once(read, || (args.device.open_with(args.quiet), start.elapsed()));
+    let ((scenes, ahead), (gpu, open_time)) = at_once(read, || (args.device.open_with(args.quiet), start.elapsed()));
     let ready_time = start.elapsed();
 
+    // Files in each other's way are the worse trouble: nothing is rendered.
+    let scenes: Vec<_> =
+        scenes.into_iter().map(|loaded| loaded.map(|loaded| (target(args, &loaded), loaded))).collect();
+    for (target, loaded) in scenes.iter().flatten() {
+        guard.output(&format!("the picture of {}", loaded.name), target.argument())?;
+    }
+    let jobs: Vec<_> =
+        scenes.into_iter().map(|scene| scene.and_then(|(target, loaded)| job(args, loaded, target))).collect();
     let mut all_stats = Vec::new();
     let mut code = OK;
-    let mut first = Some(first);
-    // A scene that cannot be read is the better message where there is no device either.
-    let gpu = match (gpu, &first) {
-        (Err(_), Some(Err(_))) if args.scenes.len() == 1 => None,
+    // A scene that cannot be rendered is the better message where there is no device either.
+    let gpu = match (gpu, jobs.as_slice()) {
+        (Err(_), [Err(_)]) => None,
         (gpu, _) => gpu?.map(|gpu| gpu.having(ahead)),
     };
-    for path in &args.scenes {
-        let loaded = first.take().unwrap_or_else(|| Loaded::read(path, args.quiet));
-        match loaded.and_then(|loaded| render_one(args, &settings, loaded, gpu.as_ref(), [open_time, ready_time])) {
+    for job in jobs {
+        let rendered = job.and_then(|job| {
+            let path = job.target.argument().to_owned();
+            guard.check_unwritten(&format!("the picture of {}", job.loaded.name), &path)?;
+            let stats = render_one(args, &settings, job, gpu.as_ref(), [open_time, ready_time])?;
+            guard.written(&path);
+            Ok(stats)
+        });
+        match rendered {
             Ok(stats) => all_stats.push(stats),
             Err(failure) => {
                 let failed = failure.report();
@@ -147,7 +178,7 @@ const MAYBE_COMPILED_MS: f64 = 40.0;
 fn render_one(
     args: &Args,
     settings: &Settings,
-    mut loaded: Loaded,
+    Job { mut loaded, target, format }: Job,
     gpu: Option<&Gpu>,
     [open_time, ready_time]: [Duration; 2],
 ) -> Result<Stats, Failure> {
@@ -157,19 +188,13 @@ fn render_one(
     }
     args.picture.resize(&mut loaded.scene);
     let scene = &loaded.scene;
-    let (target, format) = target(args, &loaded)?;
     let choice = args.sampling.choice((scene.width, scene.height))?;
     let effects = args.picture.renderable_effects(scene, settings)?;
     let selection = args.device.selection(gpu, scene, settings, &effects);
     if args.explain || args.verbose {
         let sampling = choice.as_ref().map(Choice::explanation).unwrap_or_default();
         err!("{}{}{sampling}", explanation(&loaded.name, &effects), precision_explanation(&selection));
-        if let Some(gpu) = gpu {
-            errln!("  tuning       {}", gpu.tuned().summary());
-            if let Some(note) = gpu.kernel_cache_note() {
-                errln!("  note         {note}");
-            }
-        }
+        explain_device(gpu);
     }
     let backend = gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, selection.tier));
 
@@ -189,14 +214,14 @@ fn render_one(
 
     let mut writer = PictureWriter::create(&target, format, width, height)?;
     let mut write_time = Duration::ZERO;
-    let mut progress = Progress::new(if args.quiet { Style::None } else { args.progress }, &loaded.name, height);
+    let style = if args.quiet { Style::None } else { args.progress };
+    let mut progress = Progress::of_rows(style, &loaded.name, height);
     let mut sampled = None;
     let not_finite = match &mut renderer {
         Renderer::InPart(engine, Choice { density, fill }) => {
             let (density, fill) = (*density, *fill);
             let samples = Samples::new((width, height), &density)?;
-            let whole = f64::from(height);
-            let picture = render_partial(engine, backend, &samples, fill, |part| progress.set((part * whole) as u32))?;
+            let picture = render_partial(engine, backend, &samples, fill, |part| progress.set(part))?;
             let start = Instant::now();
             writer.write_rows(&picture.rgb)?;
             write_time += start.elapsed();
@@ -208,30 +233,22 @@ fn render_one(
             let start = Instant::now();
             writer.write_rows(band.rgb)?;
             write_time += start.elapsed();
-            progress.set(band.first);
+            let rows = band.rgb.len() / (width as usize * 3);
+            progress.set((f64::from(band.first) + rows as f64) / f64::from(height));
             Ok::<_, Failure>(())
         })?,
     };
-    let (rays, times, verified) = match &renderer {
-        Renderer::Whole(engine) => (engine.rays(), engine.times(), engine.verification()),
-        Renderer::InPart(engine, _) => (engine.rays(), engine.times(), engine.verification()),
+    let (rays, times, verified, cut) = match &renderer {
+        Renderer::Whole(engine) => (engine.rays(), engine.times(), engine.verification(), engine.cut()),
+        Renderer::InPart(engine, _) => (engine.rays(), engine.times(), engine.verification(), engine.cut()),
     };
-    let cut = match &renderer {
-        Renderer::Whole(engine) => engine.cut(),
-        Renderer::InPart(engine, _) => engine.cut(),
-    };
-    drop(progress);
     let finishing = Instant::now();
     writer.finish()?;
+    progress.finish();
     write_time += finishing.elapsed();
 
     if cut > 0 && !args.quiet {
-        let device = device_name(gpu);
-        errln!(
-            "trueray: {}: more turns of a loop than {device} has, so calculated by the CPU reference: {}",
-            visible(&loaded.name),
-            count(cut, "pixel")
-        );
+        say_cut(&loaded.name, cut, &device_name(gpu));
     }
     if not_finite > 0 {
         let (name, pixels) = (visible(&loaded.name), count(not_finite, "pixel"));
@@ -277,24 +294,56 @@ enum Renderer<'a> {
     InPart(Engine<'a, Pixels>, Choice),
 }
 
-/// Where the picture goes and in which format.
-fn target(args: &Args, loaded: &Loaded) -> Result<(Target, Format), Failure> {
-    let target = match &args.output {
-        None => Target::File(loaded.output_name()),
-        Some(folder) if folder.is_dir() => Target::File(folder.join(loaded.output_name())),
-        Some(path) => Target::from_argument(path.as_os_str()),
-    };
-    let format = match &target {
-        Target::File(path) => {
-            if loaded.is_scene_file(path) {
-                let message = format!("{}: the picture would overwrite its own scene file {target}", loaded.name);
-                return Err(Failure::new(OUTPUT, message));
-            }
-            args.format.or_else(|| Format::from_extension(path))
+/// The folder of the file that OUTPUT names, where it does.
+fn folder(args: &Args) -> Option<&Path> {
+    match &args.output {
+        None => Some(Path::new("")),
+        Some(path) => path.is_dir().then_some(path),
+    }
+}
+
+fn target(args: &Args, loaded: &Loaded) -> Target {
+    match (&args.output, folder(args)) {
+        (Some(path), None) => Target::from_argument(path.as_os_str()),
+        (_, folder) => Target::File(folder.unwrap_or(Path::new("")).join(loaded.output_name())),
+    }
+}
+
+/// The scene with its target, if that can take a picture.
+fn job(args: &Args, loaded: Loaded, target: Target) -> Result<Job, Failure> {
+    if let Target::File(path) = &target {
+        if folder(args).is_some() && !args.allow_any_output {
+            check_named(path).map_err(|failure| failure.of(&loaded.name))?;
         }
-        Target::Stdout => args.format,
+        check_folder(path)?;
+    }
+    let format = match (args.format, &target) {
+        (Some(format), _) => format,
+        (None, Target::Stdout) => Format::default(),
+        (None, Target::File(path)) => format_by_ending(path).map_err(|mut failure| {
+            failure.message += "\n  help: --format p6, p3 or png writes that under any name";
+            failure.of(&loaded.name)
+        })?,
     };
-    Ok((target, format.unwrap_or_default()))
+    Ok(Job { loaded, target, format })
+}
+
+/// Says what the device could not do.
+fn say_cut(name: &str, cut: u64, device: &str) {
+    errln!(
+        "trueray: {}: more turns of a loop than {device} has, so calculated by the CPU reference: {}",
+        visible(name),
+        count(cut, "pixel")
+    );
+}
+
+/// What the device brings of its own.
+fn explain_device(gpu: Option<&Gpu>) {
+    let Some(gpu) = gpu else { return };
+    errln!("  tuning       {}", gpu.tuned().summary());
+    if let Some(note) = gpu.kernel_cache_note() {
+        errln!("  note         {note}");
+    }
 }
 
 /// The table of effects with their reasons.
@@ -317,10 +366,10 @@ fn ms(duration: Duration) -> f64 {
 }
 
 fn write_stats(path: &Path, stats: &[Stats]) -> Result<(), Failure> {
-    let document = std::collections::BTreeMap::from([("pictures", stats)]);
-    let mut json = serde_json::to_string_pretty(&document).map_err(|error| Failure::new(OUTPUT, error.to_string()))?;
-    json.push('\n');
-    let written =
-        if path == Path::new("-") { std::io::stderr().write_all(json.as_bytes()) } else { std::fs::write(path, json) };
-    written.map_err(|error| Failure::new(OUTPUT, format!("cannot write {}: {error}", path.display())))
+    let text = json(&std::collections::BTreeMap::from([("pictures", stats)]))?;
+    if path == Path::new("-") {
+        err!("{text}");
+        return Ok(());
+    }
+    save(path, &text)
 }

@@ -1,13 +1,17 @@
 //! `trueray stress`.
 
 use std::str::FromStr;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use serde::Serialize;
 
-use super::failure::{BROKEN, Failure, NO_DEVICE, OK, OUTPUT, USAGE};
+use super::failure::{BROKEN, Failure, NO_DEVICE, OK, USAGE};
+use super::files::json;
 use super::options::open_device;
-use super::output::{out, outln};
+use super::output::{errln, out, outln};
+use super::progress::{Progress, Style};
+use super::signals::{say_last, say_nothing};
 use crate::gpu::{Choice, Gpu, Kernel};
 use crate::precision::Tier;
 use crate::stress::{Class, Row, Verdict, classes, cost, run as run_classes, table};
@@ -46,6 +50,9 @@ pub(super) struct Args {
     /// Print JSON
     #[arg(long)]
     json: bool,
+    /// How progress is shown on standard error
+    #[arg(long, value_enum, default_value_t = Style::Auto)]
+    progress: Style,
 }
 
 /// Kernels by one name.
@@ -75,7 +82,17 @@ struct Report {
     seed: u64,
     seconds: f64,
     broken: usize,
+    /// The rest is missing.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    interrupted: bool,
     rows: Vec<Row>,
+}
+
+impl Report {
+    fn print(&self) -> Result<(), Failure> {
+        out!("{}", json(self)?);
+        Ok(())
+    }
 }
 
 pub(super) fn run(args: &Args) -> u8 {
@@ -126,12 +143,32 @@ fn stress(args: &Args) -> Result<u8, Failure> {
         outln!("{}, {} rays a case, seed {}", gpu.info, args.count, args.seed);
         out!("{}", table(&[]));
     }
+    let report = move |device: String, count: u32, seed: u64, rows: Vec<Row>, interrupted: bool| {
+        let broken = rows.iter().filter(|row| row.is_broken()).count();
+        Report { device, count, seed, seconds: start.elapsed().as_secs_f64(), broken, interrupted, rows }
+    };
+    let seen: Arc<Mutex<Vec<Row>>> = Arc::default();
+    let (last, device, count, seed, as_json) =
+        (Arc::clone(&seen), gpu.info.to_string(), args.count, args.seed, args.json);
+    say_last(move || {
+        let rows = lock(&last).clone();
+        errln!("trueray: interrupted after {} rows", rows.len());
+        if as_json && let Err(failure) = report(device, count, seed, rows, true).print() {
+            failure.report();
+        }
+    });
+    let mut progress = Progress::new(args.progress, "stress");
     let rows = run_classes(&gpu, &kernels, &classes, args.count as usize, args.seed, |row| {
         if !args.json {
             // Without the head.
-            table(std::slice::from_ref(row)).lines().skip(1).for_each(|line| outln!("{line}"));
+            progress.pause(|| table(std::slice::from_ref(row)).lines().skip(1).for_each(|line| outln!("{line}")));
         }
+        lock(&seen).push(row.clone());
+        let before = classes.iter().position(|class| class.id == row.id).unwrap_or(0);
+        progress.set(before as f64 / classes.len() as f64);
     })?;
+    progress.finish();
+    say_nothing();
     // Where every kernel is refused, nothing was checked.
     let refusals = rows.iter().map(|row| match &row.verdict {
         Verdict::Refused(why) => Some(why),
@@ -140,12 +177,12 @@ fn stress(args: &Args) -> Result<u8, Failure> {
     if let Some(Some(&why)) = refusals.collect::<Option<Vec<_>>>().as_deref().map(<[_]>::first) {
         return Err(Failure::new(NO_DEVICE, why));
     }
-    let broken = rows.iter().filter(|row| row.is_broken()).count();
-    let seconds = start.elapsed().as_secs_f64();
+    let report = report(gpu.info.to_string(), args.count, args.seed, rows, false);
+    let broken = report.broken;
     if args.json {
-        let report = Report { device: gpu.info.to_string(), count: args.count, seed: args.seed, seconds, broken, rows };
-        outln!("{}", serde_json::to_string_pretty(&report).map_err(|e| Failure::new(OUTPUT, e.to_string()))?);
+        report.print()?;
     } else {
+        let Report { rows, seconds, .. } = report;
         let too_few = match rows.iter().filter(|row| matches!(row.verdict, Verdict::TooFew(_))).count() {
             0 => String::new(),
             unseen => format!(", {unseen} not fully seen with so few rays"),
@@ -156,11 +193,15 @@ fn stress(args: &Args) -> Result<u8, Failure> {
     Ok(if broken == 0 { OK } else { BROKEN })
 }
 
+fn lock(rows: &Mutex<Vec<Row>>) -> MutexGuard<'_, Vec<Row>> {
+    rows.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 /// The cost of a test on each kernel.
 fn time(args: &Args, gpu: &Gpu, kernels: &[Kernel], runs: usize) -> Result<u8, Failure> {
     let costs = cost(gpu, kernels, args.count as usize, args.seed, runs)?;
     if args.json {
-        outln!("{}", serde_json::to_string_pretty(&costs).map_err(|e| Failure::new(OUTPUT, e.to_string()))?);
+        out!("{}", json(&costs)?);
         return Ok(OK);
     }
     outln!("{}, {} rays against 32 spheres, {runs} runs in turn", gpu.info, args.count);

@@ -1,14 +1,18 @@
 //! `trueray study`.
 
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::failure::{Failure, OK};
-use super::files::{check_folder, command, save, save_json, seconds};
+use super::files::{command, save, save_json, seconds};
+use super::guard::Guard;
 use super::input::Loaded;
 use super::options::{DeviceOptions, PictureOptions, samples_side};
-use super::output::out;
+use super::output::{errln, out};
+use super::progress::{Progress, Style};
+use super::signals::{say_last, say_nothing};
 use crate::settings::Settings;
-use crate::study::{Error, HardCases, Plan, Study, Subject, csv, html};
+use crate::study::{Error, Event, HardCases, Plan, Skipped, Study, Subject, csv, html};
 
 /// Arguments of `trueray study`.
 #[derive(Debug, clap::Args)]
@@ -44,6 +48,9 @@ pub(super) struct Args {
     /// Write everything as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+    /// How progress is shown on standard error
+    #[arg(long, value_enum, default_value_t = Style::Auto)]
+    progress: Style,
     #[command(flatten)]
     picture: PictureOptions,
     #[command(flatten)]
@@ -58,9 +65,7 @@ pub(super) fn run(args: &Args) -> u8 {
 }
 
 fn study(args: &Args) -> Result<(), Failure> {
-    for path in [&args.report, &args.csv, &args.json].into_iter().flatten() {
-        check_folder(path)?;
-    }
+    Guard::new(&args.scenes).options([("--report", &args.report), ("--csv", &args.csv), ("--json", &args.json)])?;
     let settings = args.picture.settings()?;
     let gpu = args.device.open()?;
     let distinct = |list: &[u32]| {
@@ -75,9 +80,11 @@ fn study(args: &Args) -> Result<(), Failure> {
         depths: distinct(&args.depths),
         sides: distinct(&args.spp_list),
     };
-    let table_on_stdout = ![&args.csv, &args.json].into_iter().flatten().any(|path| path == Path::new("-"));
-    let mut studies = Vec::new();
-    for path in &args.scenes {
+    let results = Arc::new(Mutex::new(Results::new(args)));
+    let last = Arc::clone(&results);
+    say_last(move || lock(&last).interrupted());
+    let parts = args.scenes.len() as f64;
+    for (number, path) in args.scenes.iter().enumerate() {
         let mut loaded = Loaded::read(path, false)?;
         args.picture.resize(&mut loaded.scene);
         let scene = &loaded.scene;
@@ -93,39 +100,97 @@ fn study(args: &Args) -> Result<(), Failure> {
             gpu: gpu.as_ref(),
             selection: &selection,
         };
-        let study = crate::study::study(&subject, &plan)?;
-        if table_on_stdout {
-            out!("{}{}", if studies.is_empty() { "" } else { "\n" }, study.report());
-        }
-        studies.push(study);
+        let mut progress = Progress::new(args.progress, &format!("study {} of {parts}", number + 1));
+        let study = crate::study::watched(&subject, &plan, |event| match event {
+            Event::Done(part) => progress.set(part),
+            Event::Measured(study) => lock(&results).unfinished = Some(study.clone()),
+        })?;
+        progress.finish();
+        lock(&results).add(study);
     }
-    let hard_cases = match &gpu {
-        Some(gpu) if args.hard_cases > 0 => {
-            Some(crate::study::hard_cases(gpu, args.hard_cases, args.seed, args.runs as usize)?)
-        }
-        _ => None,
-    };
-    if let Some(cases) = hard_cases.as_ref().filter(|_| table_on_stdout) {
-        out!("\n{}", cases.report());
+    if let Some(gpu) = gpu.as_ref().filter(|_| args.hard_cases > 0) {
+        let mut progress = Progress::new(args.progress, "hard cases");
+        progress.set(0.0);
+        let cases = crate::study::hard_cases(gpu, args.hard_cases, args.seed, args.runs as usize)?;
+        progress.finish();
+        lock(&results).add_cases(cases);
     }
-    write(args, &studies, hard_cases.as_ref())
+    say_nothing();
+    lock(&results).write()
 }
 
-fn write(args: &Args, studies: &[Study], hard_cases: Option<&HardCases>) -> Result<(), Failure> {
-    if let Some(path) = &args.report {
-        save(path, &html(studies, hard_cases, &command()))?;
+fn lock(results: &Mutex<Results>) -> MutexGuard<'_, Results> {
+    results.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// What has been measured, and where it goes.
+struct Results {
+    report: Option<PathBuf>,
+    csv: Option<PathBuf>,
+    json: Option<PathBuf>,
+    studies: Vec<Study>,
+    /// The scene that is being measured.
+    unfinished: Option<Study>,
+    hard_cases: Option<HardCases>,
+}
+
+impl Results {
+    fn new(args: &Args) -> Self {
+        let Args { report, csv, json, .. } = args;
+        let [report, csv, json] = [report, csv, json].map(Clone::clone);
+        Self { report, csv, json, studies: Vec::new(), unfinished: None, hard_cases: None }
     }
-    if let Some(path) = &args.csv {
-        save(path, &csv(studies))?;
-    }
-    if let Some(path) = &args.json {
-        let mut document = serde_json::json!({ "command": command(), "studies": studies });
-        if let Some(cases) = hard_cases {
-            document["hard_cases"] = serde_json::json!(cases);
+
+    /// Prints on standard output, unless data goes there.
+    fn show(&self, text: &str) {
+        if ![&self.csv, &self.json].into_iter().flatten().any(|path| path == Path::new("-")) {
+            out!("{text}");
         }
-        save_json(path, &document)?;
     }
-    Ok(())
+
+    fn add(&mut self, study: Study) {
+        self.show(&format!("{}{}", if self.studies.is_empty() { "" } else { "\n" }, study.report()));
+        self.unfinished = None;
+        self.studies.push(study);
+    }
+
+    fn add_cases(&mut self, cases: HardCases) {
+        self.show(&format!("\n{}", cases.report()));
+        self.hard_cases = Some(cases);
+    }
+
+    /// Writes what there is, and says that it is not everything.
+    fn interrupted(&mut self) {
+        if let Some(mut study) = self.unfinished.take() {
+            study.skipped.push(Skipped { name: "the rest".into(), reason: "the run was interrupted".into() });
+            self.add(study);
+        }
+        if self.studies.is_empty() {
+            errln!("trueray: interrupted before anything was measured");
+            return;
+        }
+        errln!("trueray: interrupted; what was measured is written");
+        if let Err(failure) = self.write() {
+            failure.report();
+        }
+    }
+
+    fn write(&self) -> Result<(), Failure> {
+        if let Some(path) = &self.report {
+            save(path, &html(&self.studies, self.hard_cases.as_ref(), &command()))?;
+        }
+        if let Some(path) = &self.csv {
+            save(path, &csv(&self.studies))?;
+        }
+        if let Some(path) = &self.json {
+            let mut document = serde_json::json!({ "command": command(), "studies": self.studies });
+            if let Some(cases) = &self.hard_cases {
+                document["hard_cases"] = serde_json::json!(cases);
+            }
+            save_json(path, &document)?;
+        }
+        Ok(())
+    }
 }
 
 /// Rays of each case, as many as `trueray stress` asks for, or none.

@@ -187,10 +187,24 @@ impl Format {
         }
     }
 
-    /// The format that a file name's extension asks for, in any case: `.ppm` is [`Format::P6`], `.png` is [`Format::Png`].
+    /// Bytes that a picture takes at the least: P6 exactly so many; P3 if it is black all over; PNG if nothing can be compressed
+    /// better.
+    pub(crate) fn least_bytes(self, width: u32, height: u32) -> u64 {
+        // DEFLATE makes no more than 1032 bytes of one.
+        const BEST: u64 = 1032;
+        let samples = (u64::from(width) * u64::from(height)).saturating_mul(3);
+        match self {
+            Self::P6 => samples,
+            Self::P3 => samples.saturating_mul(2),
+            Self::Png => samples / BEST,
+        }
+    }
+
+    /// The format that a file name's extension asks for, in any case: `.ppm` and `.pnm` are [`Format::P6`], `.png` is
+    /// [`Format::Png`].
     pub fn from_extension(path: &Path) -> Option<Self> {
         let extension = path.extension()?;
-        if extension.eq_ignore_ascii_case("ppm") {
+        if extension.eq_ignore_ascii_case("ppm") || extension.eq_ignore_ascii_case("pnm") {
             Some(Self::P6)
         } else if extension.eq_ignore_ascii_case("png") {
             Some(Self::Png)

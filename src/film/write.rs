@@ -8,9 +8,9 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
 use png::StreamWriter;
-use tempfile::TempPath;
 
 use super::{Format, sample_count};
+use crate::atomic::{self, Part, Place};
 
 /// Where a picture goes.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -25,6 +25,14 @@ impl Target {
     /// The target that a command line argument names: `-` is standard output, everything else a file.
     pub fn from_argument(argument: &OsStr) -> Self {
         if argument == "-" { Self::Stdout } else { Self::File(argument.into()) }
+    }
+
+    /// The command line argument that names it.
+    pub fn argument(&self) -> &Path {
+        match self {
+            Self::File(path) => path,
+            Self::Stdout => Path::new("-"),
+        }
     }
 
     fn error(&self, attempted: &'static str, source: io::Error) -> OutputError {
@@ -74,7 +82,8 @@ impl std::error::Error for OutputError {}
 /// Writes a picture row by row in bounded memory.
 ///
 /// A file is written under a temporary name in the same folder and takes its real name in [`finish`](Self::finish);
-/// a writer dropped before leaves no trace, and a file that was there stays as it was. A replaced file's permissions are
+/// a writer dropped before leaves no trace, and a file that was there stays as it was. What surely exceeds the room on the disk is
+/// refused before its first byte. A replaced file's permissions are
 /// kept. A symbolic link stays and the file behind it is replaced. What is no regular file (`/dev/null`, a FIFO) is
 /// written to directly, as is standard output.
 pub struct PictureWriter {
@@ -95,7 +104,7 @@ impl PictureWriter {
         let error = |source| target.error("create", source);
         let missing = sample_count(width, height).map_err(|wrong| error(invalid(wrong)))? as u64;
         let (raw, placement) = match target {
-            Target::File(path) => open(path).map_err(error)?,
+            Target::File(path) => open(path, format.least_bytes(width, height)).map_err(error)?,
             Target::Stdout => (Raw::Stdout(io::stdout()), Placement::InPlace),
         };
         let failure = Failure::default();
@@ -159,7 +168,7 @@ impl fmt::Debug for PictureWriter {
 /// A folder that does not exist, a file or folder without write permission, or whatever the system says.
 pub fn save_text(target: &Target, text: &str) -> Result<(), OutputError> {
     let (raw, placement) = match target {
-        Target::File(path) => open(path).map_err(|source| target.error("create", source))?,
+        Target::File(path) => open(path, text.len() as u64).map_err(|source| target.error("create", source))?,
         Target::Stdout => (Raw::Stdout(io::stdout()), Placement::InPlace),
     };
     let mut output = Watched { raw, failure: Failure::default() };
@@ -177,32 +186,31 @@ fn invalid(reason: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> io::E
 /// What remains to be done with the file once its bytes are complete.
 enum Placement {
     InPlace,
-    Rename { temporary: TempPath, destination: PathBuf, permissions: Option<Permissions> },
+    Rename(Place),
 }
 
 impl Placement {
     fn settle(self) -> io::Result<()> {
         match self {
             Self::InPlace => Ok(()),
-            Self::Rename { temporary, destination, permissions } => {
-                if let Some(permissions) = permissions {
-                    fs::set_permissions(&temporary, permissions)?;
-                }
-                temporary.persist(destination).map_err(|failed| failed.error)
-            }
+            Self::Rename(place) => place.take(),
         }
     }
 }
 
-fn open(path: &Path) -> io::Result<(Raw, Placement)> {
+/// Opens a file for so many bytes or more.
+fn open(path: &Path, bytes: u64) -> io::Result<(Raw, Placement)> {
     match fs::symlink_metadata(path) {
-        Ok(found) if found.is_file() => replace(path),
-        Ok(found) if found.is_symlink() && leads_to_replaceable(path)? => replace(&fs::canonicalize(path)?),
+        Ok(found) if found.is_file() => replace(path, bytes),
+        Ok(found) if found.is_symlink() && leads_to_replaceable(path)? => replace(&fs::canonicalize(path)?, bytes),
+        Ok(found) if found.is_symlink() && leads_nowhere(path) => {
+            open(&folder_of(path).join(fs::read_link(path)?), bytes)
+        }
         Ok(_) => {
             let file = OpenOptions::new().write(true).create(true).truncate(true).open(path)?;
             Ok((Raw::File(file), Placement::InPlace))
         }
-        Err(error) if error.kind() == io::ErrorKind::NotFound => create_new(path),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => create_new(path, bytes),
         Err(error) => Err(error),
     }
 }
@@ -219,13 +227,45 @@ fn leads_to_replaceable(link: &Path) -> io::Result<bool> {
     Ok(!folder.starts_with("/dev") && !folder.starts_with("/proc"))
 }
 
-fn replace(path: &Path) -> io::Result<(Raw, Placement)> {
-    // Renaming needs no write permission on the file itself; ask for it as an ordinary write would.
-    let permissions = OpenOptions::new().write(true).open(path)?.metadata()?.permissions();
-    temporary_for(path, Some(permissions))
+/// Whether a symbolic link stands for a file that is yet to be made.
+fn leads_nowhere(link: &Path) -> bool {
+    fs::metadata(link).is_err_and(|error| error.kind() == io::ErrorKind::NotFound)
 }
 
-fn create_new(path: &Path) -> io::Result<(Raw, Placement)> {
+/// Refuses a file that cannot fit beside what is there: its old version stays until it is complete.
+#[cfg(unix)]
+fn ensure_room(path: &Path, bytes: u64) -> io::Result<()> {
+    // A file system that does not tell its size tells no room either.
+    match rustix::fs::statvfs(folder_of(path)) {
+        Ok(disk) if disk.f_blocks > 0 && disk.f_bavail.saturating_mul(disk.f_frsize) < bytes => {
+            let free = size(disk.f_bavail.saturating_mul(disk.f_frsize));
+            let message = format!("it takes {} or more, and {free} are free", size(bytes));
+            Err(io::Error::new(io::ErrorKind::StorageFull, message))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Bytes in a unit that suits them.
+#[cfg(unix)]
+fn size(bytes: u64) -> String {
+    let units = ["kB", "MB", "GB", "TB", "PB"];
+    let power = (bytes.max(1).ilog10() / 3).clamp(1, units.len() as u32);
+    format!("{:.1} {}", bytes as f64 / 1000_f64.powi(power.cast_signed()), units[power as usize - 1])
+}
+
+#[cfg(not(unix))]
+fn ensure_room(_path: &Path, _bytes: u64) -> io::Result<()> {
+    Ok(())
+}
+
+fn replace(path: &Path, bytes: u64) -> io::Result<(Raw, Placement)> {
+    // Renaming needs no write permission on the file itself; ask for it as an ordinary write would.
+    let permissions = OpenOptions::new().write(true).open(path)?.metadata()?.permissions();
+    temporary_for(path, Some(permissions), bytes)
+}
+
+fn create_new(path: &Path, bytes: u64) -> io::Result<(Raw, Placement)> {
     if path.file_name().is_none() {
         return Err(invalid("that is no file name"));
     }
@@ -233,7 +273,7 @@ fn create_new(path: &Path) -> io::Result<(Raw, Placement)> {
     if !folder.exists() {
         return Err(io::Error::new(io::ErrorKind::NotFound, format!("there is no folder `{}`", folder.display())));
     }
-    temporary_for(path, None)
+    temporary_for(path, None, bytes)
 }
 
 fn folder_of(path: &Path) -> &Path {
@@ -243,27 +283,14 @@ fn folder_of(path: &Path) -> &Path {
     }
 }
 
-fn temporary_for(path: &Path, permissions: Option<Permissions>) -> io::Result<(Raw, Placement)> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".trueray-").suffix(".part");
-    #[cfg(unix)]
-    {
-        // As any created file: the system takes the umask off. The default would be readable by the owner only.
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(Permissions::from_mode(0o666));
-    }
-    let file = builder.tempfile_in(folder_of(path)).map_err(|error| without_temporary_name(&error))?;
-    let (file, temporary) = file.into_parts();
-    Ok((Raw::File(file), Placement::Rename { temporary, destination: path.to_owned(), permissions }))
-}
-
-/// The system's error without the temporary file's random name, which would tell the reader nothing.
-fn without_temporary_name(error: &io::Error) -> io::Error {
-    let inner = error.get_ref().and_then(std::error::Error::source).and_then(|source| source.downcast_ref());
-    inner.map_or(error.kind().into(), duplicate)
+fn temporary_for(path: &Path, permissions: Option<Permissions>, bytes: u64) -> io::Result<(Raw, Placement)> {
+    ensure_room(path, bytes)?;
+    let (part, place) = atomic::begin(path, permissions)?;
+    Ok((Raw::Part(part), Placement::Rename(place)))
 }
 
 enum Raw {
+    Part(Part),
     File(File),
     Stdout(io::Stdout),
 }
@@ -292,6 +319,7 @@ impl Watched {
 impl Write for Watched {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let result = match &mut self.raw {
+            Raw::Part(part) => part.write(bytes),
             Raw::File(file) => file.write(bytes),
             Raw::Stdout(stdout) => stdout.write(bytes),
         };
@@ -300,6 +328,7 @@ impl Write for Watched {
 
     fn flush(&mut self) -> io::Result<()> {
         let result = match &mut self.raw {
+            Raw::Part(part) => part.flush(),
             Raw::File(file) => file.flush(),
             Raw::Stdout(stdout) => stdout.flush(),
         };

@@ -3,7 +3,6 @@
 //! Lavapipe keeps its machine code by itself, and what it gives to be kept is empty; so software devices have this only
 //! where [`SWITCH`] asks for it.
 
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
@@ -107,9 +106,5 @@ fn read(path: &Path) -> Result<Option<Vec<u8>>, String> {
 fn write(path: &Path, sum: u64, data: &[u8]) -> std::io::Result<()> {
     let folder = path.parent().unwrap_or(Path::new("."));
     std::fs::create_dir_all(folder)?;
-    let mut file = tempfile::NamedTempFile::new_in(folder)?;
-    file.write_all(&sum.to_le_bytes())?;
-    file.write_all(data)?;
-    file.persist(path)?;
-    Ok(())
+    crate::atomic::save(path, &[&sum.to_le_bytes(), data])
 }

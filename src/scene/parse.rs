@@ -412,6 +412,7 @@ enum NameFault {
     Encoding,
     Folder,
     Hidden,
+    Quotes,
 }
 
 /// The name of a file in the working directory.
@@ -424,6 +425,10 @@ fn file_name(token: &[u8]) -> Result<&str, NameFault> {
     if name.contains(is_hidden) {
         return Err(NameFault::Hidden);
     }
+    let quotes = ['"', '\'', '`', '“', '”', '‘', '’'];
+    if name.starts_with(quotes) || name.ends_with(quotes) {
+        return Err(NameFault::Quotes);
+    }
     Ok(name)
 }
 
@@ -432,6 +437,8 @@ fn bad_output(place: Place<'_>, fault: &NameFault) -> Detail<'static> {
     match fault {
         NameFault::Encoding => Detail::new(message, "expected a file name in UTF-8"),
         NameFault::Hidden => Detail::new(message, "expected a file name without control or invisible characters"),
+        NameFault::Quotes => Detail::new(message, "expected a file name without quotes around it")
+            .help("quotes are not part of the format: write the name alone"),
         NameFault::Folder => Detail::new(message, "expected a file name without a folder")
             .help("OUTPUT names a file, not a path; use -o to choose a folder"),
     }

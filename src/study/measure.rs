@@ -106,7 +106,7 @@ pub struct Skipped {
 }
 
 /// Points that were measured in turn: each once, then each once more, and so on.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Default, Serialize)]
 pub struct Series {
     /// Counted runs of each point.
     pub runs: usize,
@@ -166,43 +166,28 @@ impl Exact {
     }
 }
 
+/// What is heard of measurements while they are made.
+#[derive(Debug, Clone, Copy)]
+pub enum Event<'a> {
+    /// So much is done, 1 being all.
+    Done(f64),
+    /// What has been measured, and nothing yet where it has not.
+    Measured(&'a Study),
+}
+
 /// Measures everything that `plan` asks for.
 pub fn study(subject: &Subject, plan: &Plan) -> Result<Study, Error> {
+    watched(subject, plan, |_| ())
+}
+
+/// Likewise; `hear` hears of it.
+pub fn watched(subject: &Subject, plan: &Plan, mut hear: impl FnMut(Event)) -> Result<Study, Error> {
+    /// The series, sampling in part, and what effects cost.
+    const PARTS: f64 = 5.0;
     let Subject { scene, settings, gpu, selection, .. } = *subject;
-    let mut skipped = Vec::new();
-    let mut contestants = Contestant::ALL.to_vec();
-    contestants.retain(|contestant| match contestant.obstacle(gpu) {
-        None => true,
-        Some(reason) => {
-            skipped.push(Skipped { name: contestant.name().into(), reason });
-            false
-        }
-    });
     let base = Settings { ..*settings };
-    let precision = series(subject, plan, &mut contestants, &mut skipped, &[base], None)?;
-
-    contestants.retain(|contestant| *contestant != Contestant::CpuSingle);
     let effects = (subject.effects)(settings);
-    let depths = if plan.depths.is_empty() { (0..=effects.depth).collect() } else { plan.depths.clone() };
-    let at_depth = |max_depth| Settings { max_depth, ..base };
-    let deeper = at_depth((depths.iter().max().copied().unwrap_or(0) * 2).clamp(8, Settings::MAX_DEPTH));
-    let variants: Vec<_> = depths.iter().map(|&depth| at_depth(depth)).collect();
-    let depth = series(subject, plan, &mut contestants, &mut skipped, &variants, Some(deeper))?;
-
-    let with_side = |samples| Settings { samples, ..base };
-    let finer = with_side((plan.sides.iter().max().copied().unwrap_or(1) * 2).min(Settings::MAX_SAMPLES));
-    let variants: Vec<_> = plan.sides.iter().map(|&side| with_side(side)).collect();
-    let samples = series(subject, plan, &mut contestants, &mut skipped, &variants, Some(finer))?;
-
-    let partial = partial_series(subject, plan)?;
-
-    // Its variants take about as long as what the same tier took.
-    let main = gpu.map_or(Contestant::CpuDouble, |_| Contestant::Device(selection.tier));
-    let one_ms =
-        precision.points.iter().find(|point| point.contestant == main).map_or(0.0, |point| point.wall.median());
-    let variants_ms = one_ms * (Effect::ALL.len() + 2) as f64;
-    let backend = gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, selection.tier));
-    Ok(Study {
+    let mut study = Study {
         scene: subject.name.to_owned(),
         width: scene.width,
         height: scene.height,
@@ -213,13 +198,57 @@ pub fn study(subject: &Subject, plan: &Plan) -> Result<Study, Error> {
         settings: *settings,
         effects: effects.set,
         selection: selection.clone(),
-        skipped,
-        precision,
-        depth,
-        samples,
-        partial,
-        effect_cost: effect_cost(backend, scene, settings, plan.affordable(variants_ms))?,
-    })
+        skipped: Vec::new(),
+        precision: Series::default(),
+        depth: Series::default(),
+        samples: Series::default(),
+        partial: PartialSeries::none((scene.width, scene.height)),
+        effect_cost: EffectCost { effects: Effects::of(scene, settings), variants: Vec::new() },
+    };
+    let mut contestants = Contestant::ALL.to_vec();
+    contestants.retain(|contestant| match contestant.obstacle(gpu) {
+        None => true,
+        Some(reason) => {
+            study.skipped.push(Skipped { name: contestant.name().into(), reason });
+            false
+        }
+    });
+    study.precision = series(subject, plan, &mut contestants, &mut study.skipped, &[base], None, |within| {
+        hear(Event::Done(within / PARTS));
+    })?;
+    hear(Event::Measured(&study));
+
+    contestants.retain(|contestant| *contestant != Contestant::CpuSingle);
+    let depths = if plan.depths.is_empty() { (0..=effects.depth).collect() } else { plan.depths.clone() };
+    let at_depth = |max_depth| Settings { max_depth, ..base };
+    let deeper = at_depth((depths.iter().max().copied().unwrap_or(0) * 2).clamp(8, Settings::MAX_DEPTH));
+    let variants: Vec<_> = depths.iter().map(|&depth| at_depth(depth)).collect();
+    study.depth = series(subject, plan, &mut contestants, &mut study.skipped, &variants, Some(deeper), |within| {
+        hear(Event::Done((1.0 + within) / PARTS));
+    })?;
+    hear(Event::Measured(&study));
+
+    let with_side = |samples| Settings { samples, ..base };
+    let finer = with_side((plan.sides.iter().max().copied().unwrap_or(1) * 2).min(Settings::MAX_SAMPLES));
+    let variants: Vec<_> = plan.sides.iter().map(|&side| with_side(side)).collect();
+    study.samples = series(subject, plan, &mut contestants, &mut study.skipped, &variants, Some(finer), |within| {
+        hear(Event::Done((2.0 + within) / PARTS));
+    })?;
+    hear(Event::Measured(&study));
+
+    study.partial = partial_series(subject, plan)?;
+    hear(Event::Measured(&study));
+    hear(Event::Done(4.0 / PARTS));
+
+    // Its variants take about as long as what the same tier took.
+    let main = gpu.map_or(Contestant::CpuDouble, |_| Contestant::Device(selection.tier));
+    let one_ms =
+        study.precision.points.iter().find(|point| point.contestant == main).map_or(0.0, |point| point.wall.median());
+    let variants_ms = one_ms * (Effect::ALL.len() + 2) as f64;
+    let backend = gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, selection.tier));
+    study.effect_cost = effect_cost(backend, scene, settings, plan.affordable(variants_ms))?;
+    hear(Event::Measured(&study));
+    Ok(study)
 }
 
 /// Measures `contestants` under each of `variants`; one that the device refuses is skipped from then on.
@@ -230,11 +259,14 @@ fn series(
     skipped: &mut Vec<Skipped>,
     variants: &[Settings],
     truth: Option<Settings>,
+    mut done: impl FnMut(f64),
 ) -> Result<Series, Error> {
     let truth = truth.map(|settings| Ok::<_, Error>((settings, Exact::new(subject, &settings)?))).transpose()?;
     let mut measured = Vec::new();
     let mut round_ms = 0.0;
-    for settings in variants {
+    for (index, settings) in variants.iter().enumerate() {
+        // The first half is to prepare, and to compare pictures.
+        done(0.5 * index as f64 / variants.len() as f64);
         let exact = Exact::new(subject, settings)?;
         for contestant in contestants.clone() {
             match warm_up(subject, contestant, settings, &exact, truth.as_ref().map(|(_, truth)| truth)) {
@@ -251,7 +283,8 @@ fn series(
         }
     }
     let runs = plan.affordable(round_ms);
-    for _ in 0..runs {
+    for round in 0..runs {
+        done(0.5 + 0.5 * round as f64 / runs as f64);
         for (runner, point) in &mut measured {
             let run = runner.run()?;
             point.wall.push(run.wall_ms);

@@ -16,7 +16,7 @@ pub use contestant::Contestant;
 pub use effect_cost::{EffectCost, Variant, effect_cost};
 pub use error::{Distance, Error};
 pub use hard_cases::{HardCases, hard_cases};
-pub use measure::{Plan, Point, Series, Skipped, Study, Subject, Truth, study};
+pub use measure::{Event, Plan, Point, Series, Skipped, Study, Subject, Truth, study, watched};
 pub use report::html;
 pub use sampling::{Manner, PartialPoint, PartialSeries};
 pub use table::{COLUMNS, csv};

@@ -73,6 +73,16 @@ pub struct PartialSeries {
     pub points: Vec<PartialPoint>,
 }
 
+impl PartialSeries {
+    /// Nothing measured of pictures of this size.
+    pub(super) fn none(size: (u32, u32)) -> Self {
+        let unit = f64::from(size.0.min(size.1));
+        let center = [f64::from(size.0) / 2.0, f64::from(size.1) / 2.0];
+        let fovea = Fovea { center, radius: FOVEA[0] * unit, falloff: FOVEA[1] * unit };
+        Self { runs: 0, fovea, points: Vec::new() }
+    }
+}
+
 /// A renderer of a point.
 struct Runner<'a> {
     engine: Engine<'a, Pixels>,
@@ -99,10 +109,8 @@ pub(super) fn partial_series(subject: &Subject, plan: &Plan) -> Result<PartialSe
     let backend = gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, selection.tier));
     let effects = (subject.effects)(settings);
     let size = (scene.width, scene.height);
-    let unit = f64::from(size.0.min(size.1));
-    let center = [f64::from(size.0) / 2.0, f64::from(size.1) / 2.0];
-    let fovea = Fovea { center, radius: FOVEA[0] * unit, falloff: FOVEA[1] * unit };
-    let mut series = PartialSeries { runs: 0, fovea, points: Vec::new() };
+    let mut series = PartialSeries::none(size);
+    let fovea = series.fovea;
     if Samples::obstacle(size).is_some() {
         return Ok(series);
     }

@@ -220,7 +220,11 @@ fn wrong_arguments_are_usage_errors() {
 fn output_that_cannot_be_written_is_its_own_code() {
     let place = Place::new(SCENE);
     assert_exit(&place.run("render --device cpu -o missing/out.ppm scene.txt"), 6, "missing/out.ppm");
-    assert_exit(&place.run("render --device cpu -o scene.txt scene.txt"), 6, "would overwrite its own scene file");
+    assert_exit(
+        &place.run("render --device cpu -o scene.txt scene.txt"),
+        6,
+        "would overwrite scene.txt, an input of this run",
+    );
     assert_eq!(std::fs::read_to_string(place.path().join("scene.txt")).unwrap(), SCENE);
     assert_exit(&place.run("render --device cpu --stats-json missing/stats.json scene.txt"), 6, "missing/stats.json");
 }

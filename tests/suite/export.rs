@@ -256,7 +256,7 @@ fn the_program_writes_and_has_exit_codes() {
     assert!(!folder.path().join("egg.dat").exists());
     run("export missing.txt --to povray", 3, "missing.txt");
     run("export s.txt --to povray -o nowhere/s.pov", 6, "nowhere");
-    run("export s.txt --to povray -o s.txt", 6, "its own scene file");
+    run("export s.txt --to povray -o s.txt", 6, "would overwrite s.txt, an input of this run");
 }
 
 /// The picture of an installed renderer; `None`, said aloud, where it is not.

@@ -19,6 +19,7 @@ mod effects;
 mod explain;
 mod export;
 mod families;
+mod files;
 mod film;
 mod fuzz;
 mod golden;

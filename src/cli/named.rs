@@ -1,0 +1,80 @@
+//! What a scene's OUTPUT may name: whoever wrote the scene chose it, not who renders.
+
+use std::fs::{self, File};
+use std::io::Read;
+use std::path::Path;
+
+use super::failure::{Failure, OUTPUT, USAGE};
+use crate::film::Format;
+
+/// The format that the ending of a file's name says. Without an ending, and for devices and pipes, that is P6.
+pub(super) fn format_by_ending(path: &Path) -> Result<Format, Failure> {
+    let is_open = path.extension().is_none() || fs::metadata(path).is_ok_and(|found| !found.is_file());
+    match Format::from_extension(path) {
+        Some(format) => Ok(format),
+        None if is_open => Ok(Format::default()),
+        None => {
+            let message = format!("{}: pictures are written as .ppm or .png, nothing else is known", path.display());
+            Err(Failure::new(USAGE, message))
+        }
+    }
+}
+
+/// Endings that a picture may have where a format is asked for.
+const OTHER_ENDINGS: [&str; 13] =
+    ["avif", "bmp", "dib", "exr", "gif", "hdr", "jpeg", "jpg", "pic", "tga", "tif", "tiff", "webp"];
+
+/// Refuses a file that no picture of a stranger's scene should become, in the folder that it is written to.
+pub(super) fn check_named(path: &Path) -> Result<(), Failure> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    let is_picture_name = Format::from_extension(path).is_some() || OTHER_ENDINGS.contains(&ending.as_str());
+    let refused = |why: &str| {
+        // The name may hold anything: it is shown with escapes.
+        let name = name.escape_debug();
+        let help = "help: -o FILE takes any name, --allow-any-output takes OUTPUT as it is";
+        Err(Failure::new(OUTPUT, format!("OUTPUT would write `{name}`, {why}\n  {help}")))
+    };
+    if name.contains(|c: char| c.is_control() || is_invisible(c)) {
+        return refused("a name with characters that cannot be seen");
+    }
+    if name.starts_with('.') {
+        return refused("a hidden file");
+    }
+    if !is_picture_name {
+        return refused("which is no picture's name: those end in .ppm or .png");
+    }
+    match fs::symlink_metadata(path) {
+        Err(_) => Ok(()),
+        Ok(found) if found.is_symlink() && leaves_its_folder(path) => refused("a link out of the folder"),
+        Ok(_) if fs::metadata(path).is_ok_and(|found| found.is_file()) => {
+            if begins_like_a_picture(path) {
+                Ok(())
+            } else {
+                refused("over a file that does not begin like a PPM or PNG picture")
+            }
+        }
+        Ok(_) => refused("which is no regular file"),
+    }
+}
+
+/// Characters that turn the direction of what follows, or have no width.
+fn is_invisible(c: char) -> bool {
+    matches!(c, '\u{61C}' | '\u{200B}'..='\u{200F}' | '\u{2028}'..='\u{202E}' | '\u{2060}'..='\u{206F}' | '\u{FEFF}')
+}
+
+fn leaves_its_folder(link: &Path) -> bool {
+    let folder = super::files::folder_of(link).canonicalize().ok();
+    link.canonicalize().ok().as_deref().and_then(Path::parent) != folder.as_deref()
+}
+
+/// Whether a file may be replaced by a picture: it is one, or empty.
+fn begins_like_a_picture(path: &Path) -> bool {
+    let mut start = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(8).read_to_end(&mut start));
+    match (read, start.as_slice()) {
+        (Ok(0), _) | (Ok(_), b"\x89PNG\r\n\x1a\n") => true,
+        (Ok(_), [b'P', b'3' | b'6', next, ..]) => next.is_ascii_whitespace() || *next == b'#',
+        _ => false,
+    }
+}
