@@ -44,7 +44,7 @@ pub(super) struct Args {
     #[command(flatten)]
     device: DeviceOptions,
     /// How many pixels of a device's picture the CPU reference calculates, too: a number, all, or none; without it 64, or none
-    /// with more than 200,000 spheres. Where rounding does not explain a difference, there is no picture
+    /// with more than 20,000 spheres. Where rounding does not explain a difference, there is no picture
     #[arg(long, value_name = "N")]
     verify: Option<Verify>,
     /// Write whatever file OUTPUT names: also a hidden one, one without a picture's ending, or over a file that is no picture

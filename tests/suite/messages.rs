@@ -303,7 +303,9 @@ fn a_vast_picture_is_refused_by_its_header() {
 
 #[test]
 fn statistics_have_one_shape() {
-    let place = Place::new(&[("a.txt", SCENE.as_bytes()), ("b.txt", SCENE.as_bytes())]);
+    let other = SCENE.replace("OUTPUT ", "OUTPUT other-");
+    assert_ne!(other, SCENE);
+    let place = Place::new(&[("a.txt", SCENE.as_bytes()), ("b.txt", other.as_bytes())]);
     for (scenes, count) in [("a.txt", 1), ("a.txt b.txt", 2), ("none.txt", 0)] {
         std::fs::create_dir_all(place.path().join("out")).unwrap();
         place.run(&format!("render --device cpu --stats-json stats.json -o out {scenes}"));
