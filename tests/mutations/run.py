@@ -199,8 +199,8 @@ def write_row(every, name, row):
     listed = [known[name] for name in every if name in known]
     caught = sum(row.split(" | ")[2][0].isdigit() for row in listed)
     head = (
-        f"# Planted faults\n\n{caught} of {len(every)} caught by `sh tests/run.sh` without TRUERAY_KEYS; written by "
-        "`python3 tests/mutations/run.py`.\nTests are those of the first stage that catches the fault: expected pictures and "
+        f"# Planted faults\n\nOf {len(every)} faults {len(listed)} were run, and {caught} of these caught by `sh tests/run.sh` without "
+        "TRUERAY_KEYS; written by `python3 tests/mutations/run.py`.\nTests are those of the first stage that catches the fault: expected pictures and "
         "claims, colours by hand, all.\n\n| fault | files | caught by | s |\n|---|---|---|---|\n"
     )
     TABLE.write_text(head + "\n".join(listed) + "\n")
