@@ -206,7 +206,8 @@ impl<'a> GpuRenderer<'a> {
         rounding: Rounding,
     ) -> Result<Self, Error> {
         let kernel = (kernel, rounding);
-        Ok(Self::prepared(gpu, scene, settings, effects, kernel, &Options::default(), false)?.0)
+        let options = Options::default();
+        Ok(gpu.guarded(|| Self::prepared(gpu, scene, settings, effects, kernel, &options, false))?.0)
     }
 }
 
@@ -221,7 +222,8 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         options: &Options,
     ) -> Result<Self, Error> {
         let kernel = gpu.kernel(tier)?;
-        Ok(Self::prepared(gpu, scene, settings, effects, (kernel, kernel.rounding()), options, false)?.0)
+        let kernel = (kernel, kernel.rounding());
+        Ok(gpu.guarded(|| Self::prepared(gpu, scene, settings, effects, kernel, options, false))?.0)
     }
 
     /// Likewise; with the lists of spheres, for another renderer of the same scene that rounds no more than `tier`.
@@ -235,23 +237,11 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
     ) -> Result<(Self, Acceleration), Error> {
         let kernel = gpu.kernel(tier)?;
         let kernel = (kernel, kernel.rounding());
-        let (renderer, accel) = Self::prepared(gpu, scene, settings, effects, kernel, options, true)?;
+        let (renderer, accel) = gpu.guarded(|| Self::prepared(gpu, scene, settings, effects, kernel, options, true))?;
         Ok((renderer, accel.unwrap_or_default()))
     }
 
     fn prepared(
-        gpu: &'a Gpu,
-        scene: &Scene,
-        settings: &Settings,
-        effects: &Effects,
-        (kernel, rounding): (Kernel, Rounding),
-        options: &Options,
-        keeps_lists: bool,
-    ) -> Result<(Self, Option<Acceleration>), Error> {
-        gpu.guarded(|| Self::prepared_once(gpu, scene, settings, effects, (kernel, rounding), options, keeps_lists))
-    }
-
-    fn prepared_once(
         gpu: &'a Gpu,
         scene: &Scene,
         settings: &Settings,
