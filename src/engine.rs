@@ -138,7 +138,8 @@ impl Tangents {
 }
 
 impl<O: Output> DeviceEngine<'_, O> {
-    /// Decides what rounding could not and calculates what the device cannot; `place` puts a pixel's colour where it belongs. Returns how many pixels are not finite.
+    /// Decides what rounding could not and calculates what the device cannot; `place` puts a pixel's colour where it belongs.
+    /// Returns how many pixels are not finite.
     fn decide(
         &mut self,
         Rendered { not_finite, mut tangents, cut }: Rendered,

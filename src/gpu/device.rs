@@ -149,8 +149,6 @@ pub struct Gpu {
     failure: Arc<Mutex<Option<Failure>>>,
     /// Why nothing can be asked of it any more.
     end: OnceLock<String>,
-    /// How long it may take to answer.
-    patience: Duration,
     /// Those of earlier runs.
     pub(super) kernel_cache: Option<KernelCache>,
     /// What was done before the device was open.
@@ -288,7 +286,6 @@ impl Gpu {
             mappable,
             failure,
             end: OnceLock::new(),
-            patience: PATIENCE,
             kernel_cache,
             ahead: None,
             kept: None,
@@ -422,11 +419,11 @@ impl Gpu {
 
     /// Waits until this submission is done, or all of them.
     pub(super) fn wait_until(&self, submission_index: Option<wgpu::SubmissionIndex>) -> Result<(), Error> {
-        let wait = wgpu::PollType::Wait { submission_index, timeout: Some(self.patience) };
+        let wait = wgpu::PollType::Wait { submission_index, timeout: Some(PATIENCE) };
         match self.checked("waiting for a dispatch", || self.device.poll(wait))? {
             Ok(_) => Ok(()),
             Err(error @ wgpu::PollError::Timeout) => {
-                let (waited, planned) = (self.patience.as_secs(), self.tuned.tuning.dispatch_ms);
+                let (waited, planned) = (PATIENCE.as_secs(), self.tuned.tuning.dispatch_ms);
                 let why = format!(
                     "{} has not answered for {waited} s ({error}); a dispatch is to take {planned} ms",
                     self.info
@@ -435,12 +432,6 @@ impl Gpu {
             }
             Err(error) => Err(Error::Lost(format!("{} stopped answering: {error}", self.info))),
         }
-    }
-
-    /// Waits no longer than this for anything, in place of two minutes.
-    #[must_use]
-    pub fn with_patience(self, patience: Duration) -> Self {
-        Self { patience, ..self }
     }
 
     /// The module of one kernel.
