@@ -9,6 +9,7 @@ use crate::engine::Rays;
 use crate::report::Sample;
 use crate::report::csv::record;
 use crate::report::number::{short, time};
+use crate::words::count;
 
 impl SceneResult {
     /// The scene's rows of the terminal's table.
@@ -73,8 +74,9 @@ impl Bench {
     pub fn head(&self) -> String {
         let Self { cpu_threads, runs, seconds, .. } = self;
         format!(
-            "on {}, CPU with {cpu_threads} threads; medians of {runs} runs, at most {} for the runs of a scene",
+            "on {}, CPU with {cpu_threads} threads; medians of {}, at most {} for the runs of a scene",
             self.device_name(),
+            count(*runs as u64, "run"),
             time(seconds * 1e3)
         )
     }

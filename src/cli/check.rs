@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::failure::{Failure, OK, OUTPUT, SCENE};
 use super::input::{Input, print_doubts};
+use super::named::check_named;
 use super::options::PictureOptions;
 use super::output::{out, outln};
 use super::render::{explanation, precision_explanation};
@@ -144,6 +145,12 @@ impl Contents {
     }
 }
 
+/// What `render` would say of the file that OUTPUT names, run in this folder.
+fn named_doubt(scene: &Scene) -> Option<String> {
+    let refused = check_named(Path::new(scene.output.as_ref()?)).err()?;
+    Some(format!("`render` would refuse this: {}", refused.message))
+}
+
 pub(super) fn run(args: &Args) -> u8 {
     match check_all(args) {
         Ok(code) => code,
@@ -171,6 +178,8 @@ fn check_all(args: &Args) -> Result<u8, Failure> {
         let mut doubts = Vec::new();
         if let Some(scene) = &mut input.parsed.scene {
             doubts = args.picture.doubts(scene, &settings);
+            // What `render` would say, run in this folder.
+            doubts.extend(named_doubt(scene));
             args.picture.resize(scene);
         }
         let warnings = input.parsed.warnings + doubts.len();

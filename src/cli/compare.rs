@@ -264,7 +264,12 @@ fn judge_of_unknown(
 ) -> Result<Judge, Failure> {
     let gpu = match &device.device {
         Choice::Cpu => return Ok(device.precision.0.map_or(Backend::Reference.judge(), Judge::of)),
-        Choice::Auto => open_device(&Choice::Auto).ok(),
+        // The picture is there without a device, too.
+        Choice::Auto => open_device(&Choice::Auto)
+            .inspect_err(|error| {
+                errln!("trueray: judged as a picture of hardware, since no device can be used here: {error}")
+            })
+            .ok(),
         choice => Some(open_device(choice)?),
     };
     let tier = device.selection(gpu.as_ref(), scene, settings, effects).tier;

@@ -24,6 +24,7 @@ mod study;
 mod tune;
 #[cfg(feature = "view")]
 mod view;
+mod watchdog;
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -48,7 +49,7 @@ use crate::{threads, words};
                   compare: 0 same, 1 different, 2 trouble. stress: 1 a promise is broken.\n\
                   Environment: WGPU_ADAPTER_NAME, WGPU_POWER_PREF, WGPU_BACKEND, VK_DRIVER_FILES are honoured;\n\
                   TRUERAY_NO_TUNING=1 ignores what `bench --tune` has kept, TRUERAY_KERNEL_CACHE=0 the kernels that\n\
-                  earlier runs have compiled."
+                  earlier runs have compiled; TRUERAY_PATIENCE=S gives a device up that has not answered for S seconds (120)."
 )]
 struct Cli {
     #[command(subcommand)]
@@ -95,6 +96,9 @@ pub fn run() -> ExitCode {
     threads::make_pool();
     if let Err(error) = signals::watch() {
         output::errln!("trueray: signals are not watched, an interrupt may leave temporary files: {error}");
+    }
+    if let Err(failure) = watchdog::watch() {
+        return failure.report().into();
     }
     let code = match cli.command {
         None => match meant_command(cli.render.first_scene()) {

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use super::failure::{Failure, OUTPUT, USAGE};
 use crate::film::Format;
+use crate::words::is_hidden;
 
 /// The format that the ending of a file's name says. Without an ending, and for devices and pipes, that is P6.
 pub(super) fn format_by_ending(path: &Path) -> Result<Format, Failure> {
@@ -35,7 +36,7 @@ pub(super) fn check_named(path: &Path) -> Result<(), Failure> {
         let help = "help: -o FILE takes any name, --allow-any-output takes OUTPUT as it is";
         Err(Failure::new(OUTPUT, format!("OUTPUT would write `{name}`, {why}\n  {help}")))
     };
-    if name.contains(|c: char| c.is_control() || is_invisible(c)) {
+    if name.contains(is_hidden) {
         return refused("a name with characters that cannot be seen");
     }
     if name.starts_with('.') {
@@ -56,11 +57,6 @@ pub(super) fn check_named(path: &Path) -> Result<(), Failure> {
         }
         Ok(_) => refused("which is no regular file"),
     }
-}
-
-/// Characters that turn the direction of what follows, or have no width.
-fn is_invisible(c: char) -> bool {
-    matches!(c, '\u{61C}' | '\u{200B}'..='\u{200F}' | '\u{2028}'..='\u{202E}' | '\u{2060}'..='\u{206F}' | '\u{FEFF}')
 }
 
 fn leaves_its_folder(link: &Path) -> bool {

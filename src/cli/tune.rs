@@ -10,6 +10,7 @@ use crate::bench::{TunePlan, tune};
 use crate::gpu::{Choice, Gpu};
 use crate::scene::Scene;
 use crate::tuning::save;
+use crate::words::count;
 
 /// Measures the candidates of every tuning number on the device, prints them, and keeps the best for later runs.
 pub(super) fn run_tune(
@@ -45,7 +46,8 @@ pub(super) fn run_tune(
             out!("{text}");
         }
     };
-    show(&format!("{}: medians of {runs} runs a scene, compilation not counted\n", gpu.info));
+    let measured = count(runs as u64, "run");
+    show(&format!("{}: medians of {measured} a scene, compilation not counted\n", gpu.info));
     let result = tune(&mut gpu, &plan, |knob| show(&knob.report()))?;
     let file = save(&gpu.info.name, &gpu.info.driver, result.after)?;
     let difference = result.after.difference(&result.before);

@@ -9,6 +9,7 @@ use std::time::Duration;
 use serde::Serialize;
 
 use super::ahead::Ahead;
+use super::calls::{self, Call};
 use super::error::Error;
 use super::guard::guarded;
 use super::kernel_cache::KernelCache;
@@ -187,10 +188,6 @@ type Kept = Vec<(Specialisation, Arc<Stages>)>;
 
 /// For so many specialisations compiled kernels are kept; one more drops the one that was not used for the longest time.
 const MAX_KEPT: usize = 16;
-
-/// A dispatch is sized to take a fraction of a second, and the first one is at the most so much longer: whatever takes longer than
-/// this will never end.
-const PATIENCE: Duration = Duration::from_secs(120);
 
 /// Software devices calculate in `f64` at little more than the price of `f32`, far below that of error-free transforms; hardware
 /// has few `f64` units.
@@ -419,19 +416,36 @@ impl Gpu {
 
     /// Waits until this submission is done, or all of them.
     pub(super) fn wait_until(&self, submission_index: Option<wgpu::SubmissionIndex>) -> Result<(), Error> {
-        let wait = wgpu::PollType::Wait { submission_index, timeout: Some(PATIENCE) };
-        match self.checked("waiting for a dispatch", || self.device.poll(wait))? {
-            Ok(_) => Ok(()),
-            Err(error @ wgpu::PollError::Timeout) => {
-                let (waited, planned) = (PATIENCE.as_secs(), self.tuned.tuning.dispatch_ms);
-                let why = format!(
-                    "{} has not answered for {waited} s ({error}); a dispatch is to take {planned} ms",
-                    self.info
-                );
-                Err(self.ends(why))
+        let patience = calls::patience().as_secs();
+        // Of a process that is stopped no more than one second counts.
+        for _ in 0..patience {
+            let wait = wgpu::PollType::Wait {
+                submission_index: submission_index.clone(),
+                timeout: Some(Duration::from_secs(1)),
+            };
+            let call = Call::begin();
+            let result = self.checked("waiting for a dispatch", || self.device.poll(wait))?;
+            drop(call);
+            match result {
+                Ok(_) => return Ok(()),
+                Err(wgpu::PollError::Timeout) => {}
+                Err(error) => return Err(Error::Lost(format!("{} stopped answering: {error}", self.info))),
             }
-            Err(error) => Err(Error::Lost(format!("{} stopped answering: {error}", self.info))),
         }
+        let planned = self.tuned.tuning.dispatch_ms;
+        let times = patience as f64 * 1e3 / planned;
+        let why = format!(
+            "{} has not answered for {patience} s, {times:.0} times what a dispatch is to take ({planned} ms); {} sets the limit",
+            self.info,
+            calls::PATIENCE
+        );
+        Err(self.ends(why))
+    }
+
+    /// Hands commands to the driver, which may wait for earlier ones.
+    pub(super) fn submit(&self, commands: Option<wgpu::CommandBuffer>) -> wgpu::SubmissionIndex {
+        let _call = Call::begin();
+        self.queue.submit(commands)
     }
 
     /// The module of one kernel.

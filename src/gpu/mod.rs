@@ -1,6 +1,7 @@
 //! The GPU path: a WGSL compute shader on any Vulkan device.
 
 mod ahead;
+pub mod calls;
 mod compute;
 mod device;
 mod diagnosis;

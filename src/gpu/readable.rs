@@ -35,7 +35,7 @@ impl Readable {
         if let Some(staging) = &self.staging {
             let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             encoder.copy_buffer_to_buffer(&self.buffer, 0, staging, 0, size);
-            gpu.queue.submit([encoder.finish()]);
+            gpu.submit(Some(encoder.finish()));
         }
         let host = self.staging.as_ref().unwrap_or(&self.buffer);
         let slice = host.slice(..size);

@@ -207,7 +207,7 @@ impl<'a> GpuRenderer<'a> {
     ) -> Result<Self, Error> {
         let kernel = (kernel, rounding);
         let options = Options::default();
-        Ok(gpu.guarded(|| Self::prepared(gpu, scene, settings, effects, kernel, &options, false))?.0)
+        Ok(gpu.guarded(|| Self::prepared(gpu, scene, settings, effects, kernel, &options, drop))?.0)
     }
 }
 
@@ -223,7 +223,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
     ) -> Result<Self, Error> {
         let kernel = gpu.kernel(tier)?;
         let kernel = (kernel, kernel.rounding());
-        Ok(gpu.guarded(|| Self::prepared(gpu, scene, settings, effects, kernel, options, false))?.0)
+        Ok(gpu.guarded(|| Self::prepared(gpu, scene, settings, effects, kernel, options, drop))?.0)
     }
 
     /// Likewise; with the lists of spheres, for another renderer of the same scene that rounds no more than `tier`.
@@ -237,19 +237,19 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
     ) -> Result<(Self, Acceleration), Error> {
         let kernel = gpu.kernel(tier)?;
         let kernel = (kernel, kernel.rounding());
-        let (renderer, accel) = gpu.guarded(|| Self::prepared(gpu, scene, settings, effects, kernel, options, true))?;
-        Ok((renderer, accel.unwrap_or_default()))
+        gpu.guarded(|| Self::prepared(gpu, scene, settings, effects, kernel, options, |accel| accel))
     }
 
-    fn prepared(
+    /// `keep` says what of the lists outlives their upload.
+    fn prepared<K>(
         gpu: &'a Gpu,
         scene: &Scene,
         settings: &Settings,
         effects: &Effects,
         (kernel, rounding): (Kernel, Rounding),
         options: &Options,
-        keeps_lists: bool,
-    ) -> Result<(Self, Option<Acceleration>), Error> {
+        keep: impl FnOnce(Acceleration) -> K,
+    ) -> Result<(Self, K), Error> {
         check_picture(scene, settings)?;
         let (near, eye) = (scene.window.near, settings.view.eye.length());
         let (scene, settings) = in_range(scene, settings);
@@ -297,7 +297,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         let mut resources = list_resources(gpu, &list_tables)?;
         resources.extend(copy_resources(gpu, &packed, &accel, &specialisation)?);
         drop(list_tables);
-        let kept = keeps_lists.then_some(accel);
+        let kept = keep(accel);
         resources.extend(scene_resources(gpu, &packed, &specialisation)?);
         let samples = u64::from(settings.samples * settings.samples);
         let tests_per_pixel = samples
@@ -495,7 +495,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         if let Some(timestamps) = &self.timestamps {
             timestamps.resolve(&mut encoder);
         }
-        self.gpu.queue.submit([encoder.finish()]);
+        self.gpu.submit(Some(encoder.finish()));
         self.gpu.wait()
     }
 

@@ -1,5 +1,6 @@
 //! A compiled kernel: the only place that makes pipelines, for pictures and for everything else.
 
+use super::calls::Call;
 use super::device::Gpu;
 use super::error::Error;
 use super::kernel_cache::KernelCache;
@@ -112,6 +113,7 @@ impl Stage {
                 bind_group_layouts: &[Some(&layout)],
                 immediate_size: 0,
             });
+            let _call = Call::begin();
             let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                 label: Some(entry_point),
                 layout: Some(&pipeline_layout),
@@ -143,6 +145,6 @@ impl Stage {
             pass.set_bind_group(0, group, &[]);
             pass.dispatch_workgroups(across, down, 1);
         }
-        gpu.queue.submit([encoder.finish()]);
+        gpu.submit(Some(encoder.finish()));
     }
 }

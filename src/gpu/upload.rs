@@ -41,7 +41,7 @@ pub(super) fn upload(
                 write(contents, start, view.slice(..));
             }
             // Only then is the memory on the way free for the next band.
-            gpu.queue.submit([]);
+            gpu.submit(None);
             gpu.wait()?;
         }
         Ok(buffer)
@@ -146,7 +146,7 @@ pub(super) fn texels(gpu: &Gpu, contents: &Contents, components: u32) -> Result<
         let origin = wgpu::Origin3d { y: (start / row) as u32, ..wgpu::Origin3d::ZERO };
         let target = wgpu::TexelCopyTextureInfo { origin, ..texture.as_image_copy() };
         encoder.copy_buffer_to_texture(source, target, extent(rows));
-        let submission_index = Some(gpu.queue.submit([encoder.finish()]));
+        let submission_index = Some(gpu.submit(Some(encoder.finish())));
         // One band is packed while the one before is copied; only then is the memory on the way free for the next.
         if let Some(before) = on_the_way.replace(submission_index) {
             gpu.wait_until(before)?;

@@ -5,8 +5,14 @@
 use proptest::prelude::*;
 use proptest::sample::Index;
 use proptest::test_runner::{Config, TestRunner};
+use trueray::doubts::doubts;
+use trueray::effects::Effects;
+use trueray::engine::{Backend, Engine, render_picture};
 use trueray::film::{Encoded, Leniency, decode};
+use trueray::limits;
+use trueray::precision::{Request, Selection, Tier};
 use trueray::scene::{foreign_kind, parse};
+use trueray::settings::{Quantize, Sampling, Settings, Specular};
 
 const CASES: u32 = 500;
 
@@ -103,6 +109,95 @@ fn scenes() {
         Ok(())
     };
     runner().run(&mutated(seeds), test).unwrap();
+}
+
+/// Numbers that a scene may have and hardly any has.
+fn number() -> impl Strategy<Value = String> {
+    let sizes = [-300, -150, -45, -38, -30, -8, -3, 0, 0, 0, 1, 3, 7, 15, 19, 30, 38, 150, 300];
+    let hostile = (any::<bool>(), 1..10_u32, proptest::sample::select(sizes.to_vec()))
+        .prop_map(|(negative, digit, size)| format!("{}{digit}e{size}", if negative { "-" } else { "" }));
+    let plain = prop_oneof![-3_i32..4, Just(0), Just(1)].prop_map(|x| x.to_string());
+    let fine = (-4.0_f64..4.0).prop_map(|x| x.to_string());
+    let digits = prop_oneof![Just("0.1"), Just("1.0000000000000002"), Just("5e-324"), Just("1.7976931348623157e308")]
+        .prop_map(str::to_owned);
+    prop_oneof![8 => plain, 4 => fine, 2 => hostile, 1 => digits]
+}
+
+/// Statements whose numbers are anything; most of what comes out is a scene.
+fn hostile_scene() -> impl Strategy<Value = String> {
+    let numbers = |count| proptest::collection::vec(number(), count).prop_map(|numbers| numbers.join(" "));
+    let color = || proptest::collection::vec(prop_oneof![Just("0"), Just("1"), Just("0.5"), Just("1e-30")], 3..=3);
+    let weights = || {
+        let weight = prop_oneof![6 => Just("0"), 6 => Just("0.4"), 4 => Just("1"), 1 => Just("-2"), 1 => Just("1e20")];
+        proptest::collection::vec(weight, 4..=4)
+    };
+    let exponent = proptest::sample::select(vec!["0", "1", "50", "1000000", "-3", "0.5"]);
+    let glass =
+        proptest::option::weighted(0.2, (0.0..1.0_f64, proptest::sample::select(vec!["1", "1.5", "0.3", "1e9"])));
+    let side = proptest::sample::select(vec!["1", "1", "1", "2", "0.5", "1e-3", "1e6", "1e-30", "1e30"]);
+    let sphere = (numbers(3), proptest::collection::vec(side, 3..=3), color(), weights(), exponent, glass);
+    let spheres = proptest::collection::vec(sphere, 0..7);
+    let light = (numbers(3), proptest::collection::vec(prop_oneof![Just("0.8"), Just("0"), Just("1e9")], 3..=3));
+    let lights = proptest::collection::vec(light, 0..3);
+    let near = proptest::sample::select(vec!["1", "1", "1", "0.01", "1e-300", "1e16", "1e300"]);
+    let window = proptest::sample::select(vec![
+        "LEFT -1\nRIGHT 1\nBOTTOM -1\nTOP 1",
+        "LEFT 0\nRIGHT 1e-300\nBOTTOM 0\nTOP 1e300",
+        "LEFT 1\nRIGHT -1\nBOTTOM 1\nTOP -1",
+        "LEFT 1e15\nRIGHT 1.1e15\nBOTTOM -1e-9\nTOP 1e-9",
+    ]);
+    (near, window, spheres, lights, color()).prop_map(|(near, window, spheres, lights, back)| {
+        let mut text = format!("NEAR {near}\n{window}\nRES 5 4\nAMBIENT 0.2 0.2 0.2\nBACK {}\n", back.join(" "));
+        for (index, (center, sides, color, weights, exponent, glass)) in spheres.iter().enumerate() {
+            let (sides, color, weights) = (sides.join(" "), color.join(" "), weights.join(" "));
+            text += &format!("SPHERE s{index} {center} {sides} {color} {weights} {exponent}");
+            text += &glass.map_or("\n".into(), |(kt, ior)| format!(" {kt} {ior}\n"));
+        }
+        for (index, (position, color)) in lights.iter().enumerate() {
+            text += &format!("LIGHT l{index} {position} {}\n", color.join(" "));
+        }
+        text
+    })
+}
+
+fn settings() -> impl Strategy<Value = Settings> {
+    let sampling = proptest::sample::select(vec![Sampling::Corner, Sampling::BottomLeft, Sampling::Center]);
+    let quantize = proptest::sample::select(vec![Quantize::Truncate, Quantize::Round, Quantize::Overscale]);
+    let depth = proptest::sample::select(vec![0, 1, 3, 6]);
+    (any::<bool>(), sampling, quantize, any::<bool>(), depth, 1..3_u32).prop_map(
+        |(is_exact, sampling, quantize, is_blinn, max_depth, samples)| {
+            let base = if is_exact { Settings::exact() } else { Settings::classic() };
+            let specular = if is_blinn { Specular::Blinn } else { Specular::Phong };
+            Settings { sampling, quantize, specular, max_depth, samples, ..base }
+        },
+    )
+}
+
+/// Whatever is a scene has a picture or a refusal.
+#[test]
+fn hostile_scenes() {
+    let rendered = std::cell::Cell::new(0_u32);
+    let test = |(text, settings): (String, Settings)| {
+        let parsed = parse("fuzz", text.as_bytes());
+        let Some(scene) = parsed.scene else { return Ok(()) };
+        let _ = doubts(&scene, &settings, None);
+        let effects = Effects::of(&scene, &settings);
+        if limits::problem(&scene, &settings, &effects).is_some() {
+            return Ok(());
+        }
+        let _ = Selection::of(&scene, &settings, &effects, Request::default(), &Tier::ALL);
+        if let Ok(mut engine) = Engine::new(Backend::Reference, &scene, &settings, &effects) {
+            let (rgb, _) = render_picture(&mut engine).map_err(|error| TestCaseError::fail(error.to_string()))?;
+            prop_assert_eq!(rgb.len(), 60);
+            rendered.set(rendered.get() + 1);
+        }
+        Ok(())
+    };
+    let mut runner = runner();
+    runner.run(&(hostile_scene(), settings()), test).unwrap();
+    let cases = runner.config().cases;
+    println!("{} of {cases} hostile scenes rendered", rendered.get());
+    assert!(rendered.get() > cases / 2, "{} of {cases}", rendered.get());
 }
 
 #[test]

@@ -1,0 +1,42 @@
+//! Ends the run where a driver's call never returns.
+
+use std::thread::{self, Builder};
+use std::time::Duration;
+
+use super::failure::{DEVICE_LOST, Failure, USAGE};
+use crate::gpu::calls::{self, PATIENCE};
+
+/// The time between two looks; time in which the process was stopped counts as one of them.
+const LOOK: Duration = Duration::from_secs(1);
+
+/// Takes over what the environment says, and starts the thread that looks; without one to be had, nobody does.
+pub(super) fn watch() -> Result<(), Failure> {
+    if let Some(value) = std::env::var_os(PATIENCE) {
+        let seconds = value.to_str().and_then(|text| text.parse().ok()).filter(|&seconds| seconds > 0);
+        let wrong = || Failure::new(USAGE, format!("{PATIENCE} is {value:?} and has to be a whole number of seconds"));
+        calls::set_patience(seconds.ok_or_else(wrong)?);
+    }
+    let _ = Builder::new().name("watchdog".into()).spawn(look);
+    Ok(())
+}
+
+fn look() {
+    let (mut last, mut looks) = (None, 0);
+    loop {
+        thread::sleep(LOOK);
+        let oldest = calls::oldest();
+        looks = if oldest.is_some() && oldest == last { looks + 1 } else { 0 };
+        last = oldest;
+        // Waits end themselves at that time, with a better message.
+        let most = calls::patience().as_secs() + 2;
+        if looks > most {
+            let why = format!(
+                "the device was lost: a call of its driver has not returned for {looks} s ({PATIENCE} sets the limit)"
+            );
+            // What the other threads hold may be held for ever.
+            crate::atomic::abandon_all();
+            let code = Failure::new(DEVICE_LOST, why).report();
+            std::process::exit(code.into());
+        }
+    }
+}
