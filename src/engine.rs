@@ -70,7 +70,7 @@ impl Backend<'_> {
         match self {
             Self::Reference => Judge::of(Tier::Double),
             // Without f64 only the intersection is that of the tier: shading is in f32.
-            Self::Device(gpu, Tier::Double) if !gpu.info.f64 => Judge::of(Tier::Robust),
+            Self::Device(gpu, Tier::Double) if !gpu.device.info.f64 => Judge::of(Tier::Robust),
             Self::Device(_, tier) => Judge::of(*tier),
         }
     }

@@ -176,7 +176,7 @@ pub fn watched(
     mut scene_done: impl FnMut(&Bench, &Family, &SceneResult),
 ) -> Result<Bench, gpu::Error> {
     let mut bench = Bench {
-        device: subject.gpu.map(|gpu| gpu.info.clone()),
+        device: subject.gpu.map(|gpu| gpu.device.info.clone()),
         cpu_threads: rayon::current_num_threads(),
         settings: *subject.settings,
         runs: plan.runs,

@@ -95,7 +95,7 @@ struct Subject {
 
 /// Measures one number after the other, each with the best values found before; `on_knob` hears of each.
 pub fn tune(gpu: &mut Gpu, plan: &TunePlan, mut on_knob: impl FnMut(&KnobResult)) -> Result<TuneResult, Error> {
-    let before = Tuning::of(Class::of(gpu.info.kind));
+    let before = Tuning::of(Class::of(gpu.device.info.kind));
     let mut best = before;
     let mut knobs = Vec::new();
     for knob in &KNOBS {
@@ -105,7 +105,7 @@ pub fn tune(gpu: &mut Gpu, plan: &TunePlan, mut on_knob: impl FnMut(&KnobResult)
         knobs.push(result);
     }
     gpu.set_tuning(best)?;
-    Ok(TuneResult { device: gpu.info.clone(), knobs, before, after: best })
+    Ok(TuneResult { device: gpu.device.info.clone(), knobs, before, after: best })
 }
 
 fn tune_knob(gpu: &mut Gpu, plan: &TunePlan, knob: &Knob, best: &Tuning) -> Result<KnobResult, Error> {
@@ -170,7 +170,7 @@ fn tune_knob(gpu: &mut Gpu, plan: &TunePlan, knob: &Knob, best: &Tuning) -> Resu
 fn fits(gpu: &Gpu, knob: &Knob, value: f64) -> bool {
     let mut tuning = gpu.tuned().tuning;
     (knob.set)(&mut tuning, value);
-    gpu.info.problem_with(&tuning).is_none()
+    gpu.device.info.problem_with(&tuning).is_none()
 }
 
 impl Subject {
@@ -183,8 +183,8 @@ impl Subject {
             None => self.picture = Some(rgb),
             Some(picture) if *picture == rgb => {}
             Some(_) => {
-                let change = tuning.difference(&Tuning::of(Class::of(gpu.info.kind)));
-                let message = format!("{} renders another picture with {change}: nothing is kept", gpu.info);
+                let change = tuning.difference(&Tuning::of(Class::of(gpu.device.info.kind)));
+                let message = format!("{} renders another picture with {change}: nothing is kept", gpu.device.info);
                 return Err(Error::NoDevice(message));
             }
         }

@@ -217,7 +217,7 @@ impl DeviceOptions {
 
 /// How the device of a picture is called in messages.
 pub(super) fn device_name(gpu: Option<&Gpu>) -> String {
-    gpu.map_or_else(|| "the CPU reference (f64)".to_owned(), |gpu| gpu.info.to_string())
+    gpu.map_or_else(|| "the CPU reference (f64)".to_owned(), |gpu| gpu.device.info.to_string())
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]

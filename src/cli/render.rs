@@ -149,7 +149,7 @@ fn render_all(args: &Args) -> Result<u8, Failure> {
     }
     // The files are complete, and the process ends: closing a device takes some milliseconds and gains nothing. But drivers
     // may still be writing compiled kernels to their cache; where any can have been compiled, they are waited for.
-    let is_software = gpu.as_ref().is_some_and(|gpu| gpu.info.kind == "software");
+    let is_software = gpu.as_ref().is_some_and(|gpu| gpu.device.info.kind == "software");
     if is_software && all_stats.iter().all(|stats| stats.times.compile_ms < MAYBE_COMPILED_MS) {
         std::mem::forget(gpu);
     }

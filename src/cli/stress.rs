@@ -140,7 +140,7 @@ fn stress(args: &Args) -> Result<u8, Failure> {
     }
     let start = Instant::now();
     if !args.json {
-        outln!("{}, {} rays a case, seed {}", gpu.info, args.count, args.seed);
+        outln!("{}, {} rays a case, seed {}", gpu.device.info, args.count, args.seed);
         out!("{}", table(&[]));
     }
     let report = move |device: String, count: u32, seed: u64, rows: Vec<Row>, interrupted: bool| {
@@ -149,7 +149,7 @@ fn stress(args: &Args) -> Result<u8, Failure> {
     };
     let seen: Arc<Mutex<Vec<Row>>> = Arc::default();
     let (last, device, count, seed, as_json) =
-        (Arc::clone(&seen), gpu.info.to_string(), args.count, args.seed, args.json);
+        (Arc::clone(&seen), gpu.device.info.to_string(), args.count, args.seed, args.json);
     say_last(move || {
         let rows = lock(&last).clone();
         errln!("trueray: interrupted after {} rows", rows.len());
@@ -177,7 +177,7 @@ fn stress(args: &Args) -> Result<u8, Failure> {
     if let Some(Some(&why)) = refusals.collect::<Option<Vec<_>>>().as_deref().map(<[_]>::first) {
         return Err(Failure::new(NO_DEVICE, why));
     }
-    let report = report(gpu.info.to_string(), args.count, args.seed, rows, false);
+    let report = report(gpu.device.info.to_string(), args.count, args.seed, rows, false);
     let broken = report.broken;
     if args.json {
         report.print()?;
@@ -204,7 +204,7 @@ fn time(args: &Args, gpu: &Gpu, kernels: &[Kernel], runs: usize) -> Result<u8, F
         out!("{}", json(&costs)?);
         return Ok(OK);
     }
-    outln!("{}, {} rays against 32 spheres, {runs} runs in turn", gpu.info, args.count);
+    outln!("{}, {} rays against 32 spheres, {runs} runs in turn", gpu.device.info, args.count);
     outln!("{:<10} {:>10} {:>16} {:>13}", "kernel", "ns a test", "min … max", "× schoolbook");
     for cost in &costs {
         let range = format!("{:.2} … {:.2}", cost.ns.min(), cost.ns.max());

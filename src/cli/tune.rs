@@ -47,9 +47,9 @@ pub(super) fn run_tune(
         }
     };
     let measured = count(runs as u64, "run");
-    show(&format!("{}: medians of {measured} a scene, compilation not counted\n", gpu.info));
+    show(&format!("{}: medians of {measured} a scene, compilation not counted\n", gpu.device.info));
     let result = tune(&mut gpu, &plan, |knob| show(&knob.report()))?;
-    let file = save(&gpu.info.name, &gpu.info.driver, result.after)?;
+    let file = save(&gpu.device.info.name, &gpu.device.info.driver, result.after)?;
     let difference = result.after.difference(&result.before);
     let found = if difference.is_empty() { "nothing is better than what the class has".into() } else { difference };
     match &file {

@@ -57,7 +57,7 @@ impl<'a> Filler<'a> {
     /// are the same.
     pub fn fastest(backend: Backend<'a>) -> Result<Self, gpu::Error> {
         match backend {
-            Backend::Device(gpu, _) if gpu.info.kind == "software" => Ok(Self::Cpu),
+            Backend::Device(gpu, _) if gpu.device.info.kind == "software" => Ok(Self::Cpu),
             backend => Self::new(backend),
         }
     }

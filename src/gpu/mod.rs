@@ -1,43 +1,33 @@
 //! The GPU path: a WGSL compute shader on any Vulkan device.
+//!
+//! Floors, each of which knows those before it alone: `device` knows no kernel, `kernel` no scene in memory, `table` no renderer;
+//! [`Gpu`] holds a device with its kernels, and on it stand `render` and `run`.
 
-mod ahead;
-pub mod calls;
-mod compute;
 mod device;
-mod diagnosis;
-pub mod drivers;
-mod echo;
-mod error;
-mod guard;
-mod inline;
-pub mod kernel_cache;
-pub mod layout;
-mod pack;
-mod pipeline;
-mod probe;
-mod products;
-mod readable;
-mod reconstruct;
+mod facade;
+mod kernel;
 mod render;
-mod selftest;
-mod shader;
-mod spirv;
-mod stage;
-mod tables;
-mod timestamps;
+mod run;
+mod table;
 mod tuned;
-mod upload;
 
-pub use ahead::Ahead;
-pub use device::{Choice, DeviceInfo, Gpu, list};
-pub use diagnosis::{Hidden, hidden};
-pub use echo::echo_layout;
-pub use error::Error;
-pub use pipeline::{SEE_SAMPLES, SEE_TILES, SHADE_PATHS, Specialisation, WALK_PATHS};
-pub use probe::{Answer, Batch, Point, ProbeRay, Prober, Question, RawBatch, Surface};
-pub use reconstruct::Reconstructor;
+pub use device::choose::{Choice, list};
+pub use device::diagnosis::{Hidden, hidden};
+pub use device::error::Error;
+pub use device::info::DeviceInfo;
+pub use device::open::Device;
+pub use device::{calls, drivers};
+pub use facade::Gpu;
+pub use kernel::ahead::Ahead;
+pub use kernel::cache as kernel_cache;
+pub use kernel::pipeline::{SEE_SAMPLES, SEE_TILES, SHADE_PATHS, WALK_PATHS};
+pub use kernel::shader::{Kernel, Module, Places, Slots, Storage, Textures, Variant, Walk};
+pub use kernel::specialisation::Specialisation;
+pub use kernel::spirv::Parsed;
 pub use render::{DeviceTimes, GpuRenderer, Options, Output, Pixels, Rendered, Rows};
-pub use selftest::SelfTest;
-pub use shader::{Kernel, Module, Places, Slots, Storage, Textures, Variant, Walk};
-pub use spirv::Parsed;
+pub use run::echo::echo_layout;
+pub use run::fill::Reconstructor;
+pub use run::probe::{Answer, Batch, Point, ProbeRay, Prober, Question, RawBatch, Surface};
+pub use run::selftest::SelfTest;
+pub use table::layout;
 pub use tuned::DeviceTuning;

@@ -4,32 +4,32 @@ mod order;
 mod output;
 mod pixels;
 mod place;
+mod rendered;
 mod rows;
 mod tiles;
+mod work;
 
 use std::marker::PhantomData;
 use std::num::NonZero;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
-use super::device::Gpu;
-use super::error::Error;
-use super::pack::{Packed, list_contents};
-use super::pipeline::{Bounce, Specialisation, Stages};
-use super::readable::Readable;
-use super::shader::{Kernel, Slots, Variant, Walk};
-use super::stage::{Resource, Stage};
-use super::tables::{are_too_large, check_fits, copies_fit, copy_resources, list_resources, scene_resources};
-use super::timestamps::Timestamps;
-use super::upload::{empty_texels, small_buffer};
 use crate::accel::{Acceleration, Cover, Density, Rounding};
 use crate::brightness::Scalar;
 use crate::camera::Camera;
 use crate::effects::{Effect, Effects};
 use crate::exact::TangentMargin;
 use crate::geometry::{ellipsoid, in_range, shape_indices};
+use crate::gpu::device::error::Error;
+use crate::gpu::device::timestamps::Timestamps;
+use crate::gpu::facade::Gpu;
+use crate::gpu::kernel::pipeline::Bounce;
+use crate::gpu::kernel::shader::{Kernel, Slots, Variant, Walk};
+use crate::gpu::kernel::specialisation::Specialisation;
+use crate::gpu::kernel::stage::{Resource, Stage};
+use crate::gpu::table::bind::{are_too_large, check_fits, copies_fit, copy_resources, list_resources, scene_resources};
+use crate::gpu::table::pack::{Packed, list_contents};
 use crate::limits;
 use crate::misuse::check_picture;
 use crate::precision::Tier;
@@ -39,10 +39,18 @@ use crate::tiles::TILE;
 use crate::tuning::Class;
 pub use output::{Output, Pixels, Rows};
 use place::{Statuses, dispatch_bits};
-use tiles::{MAX_DISPATCH_TILES, TILES_SIZE, TileWords};
+pub use rendered::Rendered;
+use tiles::{MAX_DISPATCH_TILES, TILE_PIXELS, TileWords};
+use work::{ONE_PATH, RAY_COUNT_SIZE, SEVERAL_PATHS, STAGE_SIZE, Work};
 
-/// Pixels of a tile.
-const TILE_PIXELS: usize = (TILE * TILE) as usize;
+/// How many workgroups a dispatch has.
+#[derive(Debug, Clone, Copy)]
+enum Count {
+    Known(u32),
+    /// As many as the device has found, at this offset.
+    Found(u64),
+}
+
 /// Paths keep the index of a sample's result as a number, exact in `f32` up to this.
 const MAX_PATHS: u64 = 1 << 24;
 
@@ -55,26 +63,6 @@ pub struct Options {
     pub device_clock: bool,
     /// About how long a pixel takes, in ms, where that is known: the first dispatch is sized by that.
     pub pixel_ms: Option<f64>,
-}
-
-/// What the pixels of a picture say of themselves. Whoever wants all of it has to calculate those of both lists elsewhere.
-#[must_use]
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Rendered {
-    /// How many are not finite, those below left out.
-    pub not_finite: u64,
-    /// Pixels with a ray that passes so near to touching a sphere that rounding decides whether it does: each shows either answer.
-    pub tangents: Vec<[u32; 2]>,
-    /// Pixels that need more turns of a loop than the device has for them, some 65,535: what they show is wrong.
-    pub cut: Vec<[u32; 2]>,
-}
-
-impl Rendered {
-    fn add(&mut self, other: Self) {
-        self.not_finite += other.not_finite;
-        self.tangents.extend(other.tangents);
-        self.cut.extend(other.cut);
-    }
 }
 
 /// Times of the work on the device so far.
@@ -148,48 +136,6 @@ struct Inputs {
     specialisation: Specialisation,
 }
 
-/// The compiled kernels with their buffers.
-#[derive(Debug)]
-struct Work {
-    stages: Arc<Stages>,
-    see_group: wgpu::BindGroup,
-    /// For what goes before a bounce.
-    begin_group: Option<wgpu::BindGroup>,
-    /// For a bounce, by whether another one follows, and from which of the two textures of paths to the other.
-    walk_groups: Option<[[wgpu::BindGroup; 2]; 2]>,
-    /// Likewise for its shading.
-    shade_groups: Option<[[wgpu::BindGroup; 2]; 2]>,
-    resolve_group: Option<wgpu::BindGroup>,
-    tiles: wgpu::Buffer,
-    stage: wgpu::Buffer,
-    /// Workgroups of the next bounce: of the kernel with a path an invocation, and of the one with several.
-    workgroups: wgpu::Buffer,
-    pixels: Readable,
-    ray_counts: Readable,
-    /// Tiles that the buffers hold.
-    capacity: u32,
-}
-
-/// How many workgroups a dispatch has.
-#[derive(Debug, Clone, Copy)]
-enum Count {
-    Known(u32),
-    /// As many as the device has found, at this offset.
-    Found(u64),
-}
-
-/// The counts of workgroups in `shaders/stage.wgsl`: their bytes, and where those of the kernel with one path an invocation and
-/// of the one with several begin.
-const WORKGROUPS_SIZE: u64 = 24;
-const ONE_PATH: u64 = 0;
-const SEVERAL_PATHS: u64 = 12;
-
-/// Bytes of the shader's `Stage`.
-const STAGE_SIZE: u64 = 8;
-
-/// Bytes of a slot's ray counts in `shaders/film.wgsl`.
-const RAY_COUNT_SIZE: u64 = 8;
-
 impl<'a> GpuRenderer<'a> {
     /// Prepares rows of `scene` for `gpu`; the kernels are compiled when the first tile needs them.
     pub fn new(gpu: &'a Gpu, scene: &Scene, settings: &Settings, effects: &Effects, tier: Tier) -> Result<Self, Error> {
@@ -207,7 +153,7 @@ impl<'a> GpuRenderer<'a> {
     ) -> Result<Self, Error> {
         let kernel = (kernel, rounding);
         let options = Options::default();
-        Ok(gpu.guarded(|| Self::prepared(gpu, scene, settings, effects, kernel, &options, drop))?.0)
+        Ok(gpu.device.guarded(|| Self::prepared(gpu, scene, settings, effects, kernel, &options, drop))?.0)
     }
 }
 
@@ -223,7 +169,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
     ) -> Result<Self, Error> {
         let kernel = gpu.kernel(tier)?;
         let kernel = (kernel, kernel.rounding());
-        Ok(gpu.guarded(|| Self::prepared(gpu, scene, settings, effects, kernel, options, drop))?.0)
+        Ok(gpu.device.guarded(|| Self::prepared(gpu, scene, settings, effects, kernel, options, drop))?.0)
     }
 
     /// Likewise; with the lists of spheres, for another renderer of the same scene that rounds no more than `tier`.
@@ -237,7 +183,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
     ) -> Result<(Self, Acceleration), Error> {
         let kernel = gpu.kernel(tier)?;
         let kernel = (kernel, kernel.rounding());
-        gpu.guarded(|| Self::prepared(gpu, scene, settings, effects, kernel, options, |accel| accel))
+        gpu.device.guarded(|| Self::prepared(gpu, scene, settings, effects, kernel, options, |accel| accel))
     }
 
     /// `keep` says what of the lists outlives their upload.
@@ -260,17 +206,17 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
             let help = "help: --precision double can, where the device has f64, and --device cpu";
             return Err(Error::NoDevice(format!("{} cannot render this scene: {why}\n  {help}", kernel.name())));
         }
-        let tuning = &gpu.tuned().tuning;
+        let (tuning, textures) = (&gpu.tuned().tuning, gpu.textures());
         let specialisation = Specialisation {
             slots: O::SLOTS,
             count_rays: options.count_rays,
-            ..Specialisation::new(scene, settings, effects, kernel, tuning, gpu.textures())
+            ..Specialisation::new(scene, settings, effects, kernel, tuning, textures)
         };
         let camera = Camera::new(scene, settings);
         let lists = |density| Acceleration::with_density(scene, &camera, specialisation.effects, rounding, density);
         let mut accel = lists(&tuning.density);
         // Finer lists than are needed must not keep a scene from fitting.
-        if tuning.density != Density::LEAST && are_too_large(gpu, &list_contents(&accel)) {
+        if tuning.density != Density::LEAST && are_too_large(&gpu.device, &list_contents(&accel)) {
             accel = lists(&Density::LEAST);
         }
         let mut specialisation = specialisation.with_grid(accel.grid.as_ref(), tuning);
@@ -285,20 +231,20 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         };
         specialisation.shared_surfaces = indices.is_some();
         let packed = Packed::new(scene, settings, effects, kernel, &accel, indices, tangent_margin);
-        if specialisation.variant().copies() && !copies_fit(gpu, &packed, &accel) {
+        if specialisation.variant().copies() && !copies_fit(&gpu.device, &packed, &accel) {
             specialisation.walk = Walk::AtOnce;
         }
         let list_tables = list_contents(&accel);
-        check_fits(gpu, &packed, &list_tables)?;
+        check_fits(&gpu.device, &packed, &list_tables)?;
         let cover = accel.screen.cover();
         let picture_tiles = u64::from(scene.width.div_ceil(TILE)) * u64::from(scene.height.div_ceil(TILE));
         let covered_tiles = picture_tiles.min(cover.most());
         // Lists that nobody wants any more go before the spheres take memory on the device.
-        let mut resources = list_resources(gpu, &list_tables)?;
-        resources.extend(copy_resources(gpu, &packed, &accel, &specialisation)?);
+        let mut resources = list_resources(&gpu.device, textures, &list_tables)?;
+        resources.extend(copy_resources(&gpu.device, textures, &packed, &accel, &specialisation)?);
         drop(list_tables);
         let kept = keep(accel);
-        resources.extend(scene_resources(gpu, &packed, &specialisation)?);
+        resources.extend(scene_resources(&gpu.device, textures, &packed, &specialisation)?);
         let samples = u64::from(settings.samples * settings.samples);
         let tests_per_pixel = samples
             * (scene.spheres.len().min(64) as u64 + 1)
@@ -320,7 +266,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
             covered_tiles,
             background: settings.quantize.levels(scene.background),
             max_depth: effects.depth,
-            hands: match Class::of(gpu.info.kind) {
+            hands: match Class::of(gpu.device.info.kind) {
                 Class::Software => std::thread::available_parallelism().map_or(1, NonZero::get),
                 Class::Integrated | Class::Discrete => 1,
             },
@@ -329,7 +275,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
             tiles_per_dispatch: tiles.clamp(1, u64::from(MAX_DISPATCH_TILES)) as u32,
             times: DeviceTimes::default(),
             submitted: 0,
-            timestamps: options.device_clock.then(|| Timestamps::new(gpu)).flatten(),
+            timestamps: options.device_clock.then(|| Timestamps::new(&gpu.device)).flatten(),
             pixels: 0,
             rays: [0; 2],
         };
@@ -365,7 +311,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
     pub fn too_few_turns(&self, pixels: usize) -> Error {
         Error::NoDevice(format!(
             "{pixels} pixels need more turns of a loop than {} has for them; `--device cpu` has no such limit",
-            self.gpu.info
+            self.gpu.device.info
         ))
     }
 
@@ -384,7 +330,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         let (stages, used_before) = gpu.stages(specialisation)?;
         let capacity = self.capacity();
         let has_bounces = self.max_depth > 0;
-        let work = gpu.checked("reserving buffers", || {
+        let work = gpu.device.checked("reserving buffers", || {
             Work::new(gpu, stages, resources, capacity, specialisation, has_bounces)
         })?;
         if !used_before {
@@ -396,7 +342,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
 
     /// How many tiles a dispatch has at the most: as their buffers and the device's limits allow.
     fn capacity(&self) -> u32 {
-        let info = &self.gpu.info;
+        let info = &self.gpu.device.info;
         let specialisation = &self.inputs.specialisation;
         let path = 2 * specialisation.path_size() * u64::from(specialisation.keeps_paths());
         let color = if self.samples > 1 { specialisation.color_size() } else { 4 };
@@ -444,7 +390,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         let took = start.elapsed();
         self.times.render += took;
         if let Some(timestamps) = &self.timestamps {
-            self.times.on_device += timestamps.elapsed(self.gpu)?;
+            self.times.on_device += timestamps.elapsed(&self.gpu.device)?;
         }
         self.times.longest_dispatch = self.times.longest_dispatch.max(took);
         self.times.dispatches += 1;
@@ -454,9 +400,9 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
     /// Runs all stages over `tiles` and waits for them.
     fn submit(&mut self, work: &Work, tiles: &[[u32; 2]]) -> Result<(), Error> {
         self.submitted += 1;
-        self.gpu.queue.write_buffer(&work.tiles, 0, &self.packed_places(tiles));
-        self.gpu.queue.write_buffer(&work.stage, 0, &[0; STAGE_SIZE as usize]);
-        let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        self.gpu.device.queue.write_buffer(&work.tiles, 0, &self.packed_places(tiles));
+        self.gpu.device.queue.write_buffer(&work.stage, 0, &[0; STAGE_SIZE as usize]);
+        let mut encoder = self.gpu.device.raw.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                 label: None,
@@ -495,8 +441,8 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         if let Some(timestamps) = &self.timestamps {
             timestamps.resolve(&mut encoder);
         }
-        self.gpu.submit(Some(encoder.finish()));
-        self.gpu.wait()
+        self.gpu.device.submit(Some(encoder.finish()));
+        self.gpu.device.wait()
     }
 
     /// Whether the dispatch has to be repeated, since bounces or paths that share an invocation, and so the turns of its loops, need
@@ -520,7 +466,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
                 let asked = places.filter(|(place, _)| is_asked(*place)).flat_map(|(_, counts)| counts);
                 asked.fold([0, 0], |[s, r], [shadow, reflection]| [s + u64::from(*shadow), r + u64::from(*reflection)])
             };
-            let [shadow, reflection] = work.ray_counts.read(self.gpu, 2 * places * samples, sum)?;
+            let [shadow, reflection] = work.ray_counts.read(&self.gpu.device, 2 * places * samples, sum)?;
             self.rays = [self.rays[0] + shadow, self.rays[1] + reflection];
         }
         Ok(())
@@ -531,76 +477,5 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         let target = self.gpu.tuned().tuning.dispatch_ms * 1e-3;
         let factor = (target / took.as_secs_f64().max(1e-9)).min(4.0);
         self.tiles_per_dispatch = ((tiles as f64 * factor) as u32).clamp(1, MAX_DISPATCH_TILES);
-    }
-}
-
-impl Work {
-    fn new(
-        gpu: &Gpu,
-        stages: Arc<Stages>,
-        resources: &[(u32, Resource)],
-        capacity: u32,
-        specialisation: &Specialisation,
-        has_bounces: bool,
-    ) -> Self {
-        let device = &gpu.device;
-        let empty = |size, usage| {
-            device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
-        };
-        let (storage, copied) = (wgpu::BufferUsages::STORAGE, wgpu::BufferUsages::COPY_DST);
-        let pixel_count = u64::from(capacity) * TILE_PIXELS as u64;
-        let slots = pixel_count * u64::from(specialisation.samples * specialisation.samples);
-        let pixels = Readable::new(gpu, pixel_count);
-        let ray_counts = Readable::new(gpu, if specialisation.count_rays { slots * RAY_COUNT_SIZE / 4 } else { 2 });
-        let paths = specialisation.path_size() * if specialisation.keeps_paths() { slots } else { 1 };
-        let paths = [0, 1].map(|_| empty_texels(gpu, paths, 4));
-        let in_turn = matches!(specialisation.walk, Walk::InTurn(_));
-        let hits = empty_texels(gpu, if in_turn { 4 * slots } else { 4 }, 1);
-        let tiles = match specialisation.slots {
-            Slots::Tiles => empty(TILES_SIZE, wgpu::BufferUsages::UNIFORM | copied),
-            Slots::List => empty((1 + pixel_count) * 8, storage | copied),
-        };
-        let stage = empty(STAGE_SIZE, storage | copied);
-        let workgroups = empty(WORKGROUPS_SIZE, storage | wgpu::BufferUsages::INDIRECT);
-        let colors = stages.resolve.as_ref().map(|_| empty(slots * specialisation.color_size(), storage));
-        let results = colors.as_ref().unwrap_or(&pixels.buffer);
-        let mut all = resources.to_vec();
-        let mut bind = |binding, buffer: &wgpu::Buffer| all.push((binding, Resource::Buffer(buffer.clone())));
-        bind(6, &tiles);
-        bind(7, results);
-        bind(8, &ray_counts.buffer);
-        bind(12, &stage);
-        bind(15, &pixels.buffer);
-        bind(16, &workgroups);
-        let has_next =
-            [0_u32, 1].map(|has_next| small_buffer(gpu, bytemuck::bytes_of(&has_next), wgpu::BufferUsages::UNIFORM));
-        let turn = |stage: &Stage, from: usize, goes_on: usize| {
-            let [from, to] = [from, 1 - from].map(|half| Resource::Texels(paths[half].clone()));
-            let [read, written] = [0, 1].map(|_| Resource::Texels(hits.clone()));
-            let has_next = Resource::Buffer(has_next[goes_on].clone());
-            let turn = [(11, from), (18, to), (19, has_next), (22, read), (23, written)];
-            stage.bind(gpu, &[&all[..], &turn].concat())
-        };
-        let see_group = turn(&stages.see, 1, usize::from(has_bounces));
-        let begin_group = stages.bounce.as_ref().map(|bounce| bounce.begin.bind(gpu, &all));
-        let all_turns = |stage| [0, 1].map(|goes_on| [0, 1].map(|from| turn(stage, from, goes_on)));
-        let walk_groups = stages.bounce.as_ref().map(|bounce| all_turns(&bounce.walk));
-        let shade = stages.bounce.as_ref().and_then(|bounce| bounce.shade.as_ref());
-        let shade_groups = shade.map(all_turns);
-        let resolve_group = stages.resolve.as_ref().map(|resolve| resolve.bind(gpu, &all));
-        Self {
-            stages,
-            see_group,
-            begin_group,
-            walk_groups,
-            shade_groups,
-            resolve_group,
-            tiles,
-            stage,
-            workgroups,
-            pixels,
-            ray_counts,
-            capacity,
-        }
     }
 }

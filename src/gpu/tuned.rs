@@ -1,6 +1,6 @@
 //! The tuning of a device: what is kept for it, or what its class begins with.
 
-use super::device::DeviceInfo;
+use super::device::info::DeviceInfo;
 use crate::tuning::{Class, Kept, Source, Tuning, load};
 
 /// A device's tuning and where it comes from.

@@ -162,7 +162,7 @@ impl Shared {
         let picture = |make: fn(&Gpu, Tier) -> Result<Metrics, Error>| match kernel {
             Kernel::Tier(tier) => make(prober.gpu(), tier).map(Some),
             // On a device without f64 this is what `double` renders with; elsewhere no picture is.
-            Kernel::Pairs if !prober.gpu().info.f64 => make(prober.gpu(), Tier::Double).map(Some),
+            Kernel::Pairs if !prober.gpu().device.info.f64 => make(prober.gpu(), Tier::Double).map(Some),
             Kernel::Pairs | Kernel::Schoolbook | Kernel::NoBarrier => Ok(None),
         };
         match case.kind {

@@ -59,7 +59,7 @@ pub fn hard_cases(gpu: &Gpu, rays: usize, seed: u64, runs: usize) -> Result<Hard
     }
     rows.retain(|row| !matches!(row.verdict, Verdict::Refused(_)));
     let costs = cost(gpu, &KERNELS, rays * TIMED_RAYS, seed, runs)?;
-    Ok(HardCases { device: gpu.info.clone(), rays, seed, costs, skipped, rows })
+    Ok(HardCases { device: gpu.device.info.clone(), rays, seed, costs, skipped, rows })
 }
 
 /// Whether `row` is of a kernel that no tier is: it promises nothing.

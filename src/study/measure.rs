@@ -193,7 +193,7 @@ pub fn watched(subject: &Subject, plan: &Plan, mut hear: impl FnMut(Event)) -> R
         height: scene.height,
         spheres: scene.spheres.len(),
         lights: scene.lights.len(),
-        device: gpu.map(|gpu| gpu.info.clone()),
+        device: gpu.map(|gpu| gpu.device.info.clone()),
         cpu_threads: rayon::current_num_threads(),
         settings: *settings,
         effects: effects.set,

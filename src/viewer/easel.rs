@@ -552,7 +552,7 @@ impl<'g> Easel<'g> {
             "size": size, "shrunk": shrunk,
             "step": step, "samples": samples * samples, "sampled": sampled, "attention": self.desk.attention(),
             "frame_ms": frame, "times": times, "not_finite": not_finite,
-            "device": self.gpu.map_or_else(|| "the CPU reference (f64)".to_owned(), |gpu| gpu.info.to_string()),
+            "device": self.gpu.map_or_else(|| "the CPU reference (f64)".to_owned(), |gpu| gpu.device.info.to_string()),
             "effects": effects.rows, "depth": effects.depth,
             "tier": selection.tier, "tier_reason": selection.reason,
             "wishes": {

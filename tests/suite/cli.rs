@@ -105,7 +105,7 @@ fn a_required_device_never_falls_back() {
 fn a_device_that_is_not_there_lists_those_that_are() {
     let Some(gpu) = gpu("a_device_that_is_not_there_lists_those_that_are") else { return };
     let place = Place::new(SCENE);
-    let name = &gpu.info.name;
+    let name = &gpu.device.info.name;
     for arguments in ["render --device 99 scene.txt", "render --device no-such-device scene.txt"] {
         let output = place.run(arguments);
         assert_exit(&output, 4, "there are:\n  0: ");
@@ -119,9 +119,9 @@ fn a_device_that_is_not_there_lists_those_that_are() {
 
     let list = place.run("devices --json");
     let list: serde_json::Value = serde_json::from_slice(&list.stdout).unwrap();
-    assert_eq!(list[gpu.info.index]["name"], name.as_str());
-    assert!(list[gpu.info.index]["f64"].is_boolean());
-    assert_exit(&place.run(&format!("render --device {} scene.txt", gpu.info.index)), 0, name);
+    assert_eq!(list[gpu.device.info.index]["name"], name.as_str());
+    assert!(list[gpu.device.info.index]["f64"].is_boolean());
+    assert_exit(&place.run(&format!("render --device {} scene.txt", gpu.device.info.index)), 0, name);
 }
 
 #[test]
@@ -417,7 +417,7 @@ fn a_cache_folder_that_cannot_be_used_is_no_news() {
     let Some(gpu) = gpu("a_cache_folder_that_cannot_be_used_is_no_news") else { return };
     let place = Place::new(SCENE);
     let run = |variables: &[(&str, &str)]| {
-        let arguments = format!("render -q --precision robust --device {} scene.txt", gpu.info.index);
+        let arguments = format!("render -q --precision robust --device {} scene.txt", gpu.device.info.index);
         let mut command = place.command(&arguments);
         command.env_remove("XDG_CACHE_HOME").env_remove("HOME").env("TRUERAY_KERNEL_CACHE", "1");
         // Mesa has a cache of its own in the same folder.

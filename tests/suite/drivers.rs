@@ -47,7 +47,7 @@ fn compiled_kernels_are_kept_and_a_damaged_file_is_told_and_replaced() {
     let Some(gpu) = crate::support::gpu("compiled_kernels_are_kept_and_a_damaged_file_is_told_and_replaced") else {
         return;
     };
-    let index = gpu.info.index;
+    let index = gpu.device.info.index;
     drop(gpu);
     let folder = tempfile::tempdir().unwrap();
     let scene =

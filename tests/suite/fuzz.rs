@@ -5,6 +5,7 @@
 use proptest::prelude::*;
 use proptest::sample::Index;
 use proptest::test_runner::{Config, TestRunner};
+use std::fmt::Write as _;
 use trueray::doubts::doubts;
 use trueray::effects::Effects;
 use trueray::engine::{Backend, Engine, render_picture};
@@ -150,11 +151,11 @@ fn hostile_scene() -> impl Strategy<Value = String> {
         let mut text = format!("NEAR {near}\n{window}\nRES 5 4\nAMBIENT 0.2 0.2 0.2\nBACK {}\n", back.join(" "));
         for (index, (center, sides, color, weights, exponent, glass)) in spheres.iter().enumerate() {
             let (sides, color, weights) = (sides.join(" "), color.join(" "), weights.join(" "));
-            text += &format!("SPHERE s{index} {center} {sides} {color} {weights} {exponent}");
+            let _ = write!(text, "SPHERE s{index} {center} {sides} {color} {weights} {exponent}");
             text += &glass.map_or("\n".into(), |(kt, ior)| format!(" {kt} {ior}\n"));
         }
         for (index, (position, color)) in lights.iter().enumerate() {
-            text += &format!("LIGHT l{index} {position} {}\n", color.join(" "));
+            let _ = writeln!(text, "LIGHT l{index} {position} {}", color.join(" "));
         }
         text
     })

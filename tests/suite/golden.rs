@@ -163,7 +163,7 @@ fn check_subject(test: &str, subject: &Subject) {
     }
     let recorded = Hashes::load();
     for (tier, hash, picture) in &hashes {
-        if *tier == Tier::Double && gpu.info.f64 {
+        if *tier == Tier::Double && gpu.device.info.f64 {
             subject.compare("device at double", &expected, picture);
         }
         let known = recorded.of(name, &tier.to_string());
@@ -178,8 +178,8 @@ fn check_subject(test: &str, subject: &Subject) {
         let says = format!(
             "{name} at {tier}: {} {} renders other bytes than those recorded with {} in scenes/hashes.txt ({hash}, not {}): {} \
              pixels differ from the reference, {} of them unexplained, see {}",
-            gpu.info.name,
-            gpu.info.driver,
+            gpu.device.info.name,
+            gpu.device.info.driver,
             recorded.driver,
             known.map_or("any", String::as_str),
             explanation.differing,
@@ -208,7 +208,7 @@ fn hash(picture: &Picture) -> String {
 
 /// What renders, without the versions that change no byte.
 fn driver(gpu: &Gpu) -> String {
-    gpu.info.name.split(' ').next().unwrap_or_default().to_owned()
+    gpu.device.info.name.split(' ').next().unwrap_or_default().to_owned()
 }
 
 /// The names of all expected pictures, sorted.

@@ -71,7 +71,7 @@ fn gpu_matches_every_key_within_f32() {
 fn gpu_at_double_matches_every_key_bit_for_bit() {
     let test = "gpu_at_double_matches_every_key_bit_for_bit";
     let (Some(keys), Some(gpu)) = (keys(test), gpu(test)) else { return };
-    if !gpu.info.f64 {
+    if !gpu.device.info.f64 {
         return say_skipped(test, "the device has no f64");
     }
     let settings = Settings::classic();

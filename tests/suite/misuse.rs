@@ -147,7 +147,7 @@ fn tunings_out_of_their_limits_are_refused() {
     let own = gpu.tuned().tuning;
     for (tuning, name) in [
         (Tuning { workgroup: 0, ..own }, "workgroup"),
-        (Tuning { workgroup: gpu.info.max_invocations + 1, ..own }, "workgroup"),
+        (Tuning { workgroup: gpu.device.info.max_invocations + 1, ..own }, "workgroup"),
         (Tuning { path_mib: u32::MAX, ..own }, "path_mib"),
         (Tuning { paths: 0, ..own }, "paths"),
         (Tuning { dispatch_ms: f64::NAN, ..own }, "dispatch_ms"),

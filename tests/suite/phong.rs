@@ -180,7 +180,7 @@ fn pairs(is_there: bool) -> Option<MutexGuard<'static, Gpu>> {
     static PAIRS: OnceLock<Option<Mutex<Gpu>>> = OnceLock::new();
     let open = || {
         let mut gpu = Gpu::open(&Choice::Gpu).ok().filter(|_| is_there)?;
-        gpu.info.f64 = false;
+        gpu.device.info.f64 = false;
         Some(Mutex::new(gpu))
     };
     PAIRS.get_or_init(open).as_ref().map(|gpu| gpu.lock().unwrap_or_else(PoisonError::into_inner))
@@ -232,7 +232,7 @@ fn check(test: &str, cases: &[Case], ways: Ways) {
                     gpu.set_tuning(tuning).unwrap();
                     for &tier in tiers.iter().filter(|&&tier| gpu.kernel(tier).is_ok()) {
                         let (picture, _) = gpu_picture(gpu, tier, &scene, settings, &effects);
-                        let tolerance = if tier == Tier::Double && gpu.info.f64 { DOUBLE } else { SINGLE };
+                        let tolerance = if tier == Tier::Double && gpu.device.info.f64 { DOUBLE } else { SINGLE };
                         let pixel = picture.pixel(PIXEL.0, PIXEL.1);
                         judge.levels(&format!("{name}, {tier}, {way}"), pixel, tolerance);
                     }

@@ -208,7 +208,7 @@ fn auto_picks_a_tier_that_covers_the_scene() {
 fn kernels_are_parsed_ahead_for_the_picture_that_follows() {
     let Some(own) = gpu("kernels_are_parsed_ahead_for_the_picture_that_follows") else { return };
     let (settings, software) = (Settings::classic(), Tuning::of(Class::Software));
-    let is_expected = own.info.kind == "software" && own.tuned().tuning == software;
+    let is_expected = own.device.info.kind == "software" && own.tuned().tuning == software;
     let ahead_of = |scene: &trueray::scene::Scene| {
         Ahead::of(scene, &settings, &Effects::of(scene, &settings), precision::Request(None))
     };
@@ -243,7 +243,7 @@ fn a_lost_device_is_an_error_and_no_panic() {
     let mut renderer = GpuRenderer::new(&own, &scene, &settings, &effects, Tier::Fast).unwrap();
     let mut rgb = vec![0; 40 * 40 * 3];
     assert!(renderer.rows(0, &mut rgb).unwrap().cut.is_empty());
-    own.destroy();
+    own.device.destroy();
     let error = renderer.rows(0, &mut rgb).unwrap_err();
     assert!(matches!(error, gpu::Error::Lost(_)), "{error:?}");
 }

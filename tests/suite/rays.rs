@@ -39,7 +39,7 @@ fn the_device_counts_the_rays_of_the_reference() {
             assert_eq!(expected.primary, 61 * 45 * samples, "{case}");
             let (fast, _) = counted(Backend::Device(&gpu, Tier::Fast), &scene, &settings, &effects);
             assert_eq!(fast.primary, expected.primary, "{case}");
-            if gpu.info.f64 {
+            if gpu.device.info.f64 {
                 let (double, same) = counted(Backend::Device(&gpu, Tier::Double), &scene, &settings, &effects);
                 assert_eq!(double, expected, "{case}");
                 assert!(same == picture, "{case}");

@@ -274,7 +274,7 @@ fn pairs_differ_from_the_reference_only_where_explained() {
         return;
     }
     let mut gpu = Gpu::open(&Choice::Gpu).unwrap();
-    gpu.info.f64 = false;
+    gpu.device.info.f64 = false;
     if gpu.kernel(Tier::Double).is_err() {
         return say_skipped("pairs_differ_from_the_reference_only_where_explained", "no error-free transforms");
     }

@@ -518,7 +518,7 @@ fn error_free_transforms_are_exact_on_this_device() {
     validate(&Module::selftest().parse().unwrap());
     let test = SelfTest::run(&gpu).unwrap();
     // A device that fails is refused by the tier that needs them; the software drivers of the CI do not.
-    assert_eq!((test.sum_mismatches, test.product_mismatches), (0, 0), "{}", gpu.info);
+    assert_eq!((test.sum_mismatches, test.product_mismatches), (0, 0), "{}", gpu.device.info);
     assert_eq!(gpu.kernel(Tier::Robust), Ok(Kernel::Tier(Tier::Robust)));
 }
 

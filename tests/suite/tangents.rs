@@ -185,7 +185,7 @@ fn devices_hit_what_rays_touch() {
 #[test]
 fn what_follows_a_tangent_is_decided_too() {
     let Some(gpu) = gpu("what_follows_a_tangent_is_decided_too") else { return };
-    if !gpu.info.f64 {
+    if !gpu.device.info.f64 {
         return say_skipped("what_follows_a_tangent_is_decided_too", "the device has no f64");
     }
     let mut scene = scene_of(

@@ -68,7 +68,7 @@ fn no_tuning_changes_a_byte() {
             gpu.set_tuning(Tuning::of(Class::Software)).unwrap();
             let expected = render(&gpu, tier, &scene, &settings);
             for mut tuning in tunings() {
-                tuning.workgroup = tuning.workgroup.min(gpu.info.max_invocations);
+                tuning.workgroup = tuning.workgroup.min(gpu.device.info.max_invocations);
                 gpu.set_tuning(tuning).unwrap();
                 let picture = render(&gpu, tier, &scene, &settings);
                 let changed = picture.iter().zip(&expected).filter(|(a, b)| a != b).count();
@@ -131,7 +131,7 @@ fn run(cache: &Path, ignore: bool, arguments: &str) -> (String, String, Option<i
 #[test]
 fn what_is_kept_is_used_and_said_or_refused_aloud() {
     let Some(gpu) = gpu("what_is_kept_is_used_and_said_or_refused_aloud") else { return };
-    let (name, driver, index) = (gpu.info.name.clone(), gpu.info.driver.clone(), gpu.info.index);
+    let (name, driver, index) = (gpu.device.info.name.clone(), gpu.device.info.driver.clone(), gpu.device.info.index);
     drop(gpu);
     let folder = tempfile::tempdir().unwrap();
     let cache = folder.path();

@@ -347,7 +347,7 @@ fn a_lost_device_is_opened_again() {
     page.finish();
     for round in 0..3 {
         let gpu = work.gpu.lock().unwrap().clone().unwrap();
-        gpu.destroy();
+        gpu.device.destroy();
         page.send(&format!(r#"{{"do":"orbit","right":0.{},"up":0.1}}"#, round + 1));
         page.until(|words| words["is"] == "lost");
         page.finish();

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::super::shader::Slots;
+use crate::gpu::kernel::shader::Slots;
 
 /// What a renderer renders: [`Rows`] or [`Pixels`].
 pub trait Output: fmt::Debug + sealed::Sealed {

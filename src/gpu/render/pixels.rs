@@ -2,10 +2,13 @@
 
 use std::time::Instant;
 
+use super::GpuRenderer;
 use super::output::Pixels;
 use super::place::Statuses;
-use super::{GpuRenderer, Rendered, TILE_PIXELS, Work};
-use crate::gpu::error::Error;
+use super::rendered::Rendered;
+use super::tiles::TILE_PIXELS;
+use super::work::Work;
+use crate::gpu::device::error::Error;
 use crate::misuse::check_pixels;
 
 impl GpuRenderer<'_, Pixels> {
@@ -16,7 +19,7 @@ impl GpuRenderer<'_, Pixels> {
     /// [`Error::Misuse`] where a pixel is not of the picture, or there is not one colour for each.
     pub fn pixels(&mut self, pixels: &[[u32; 2]], colors: &mut [[u8; 3]]) -> Result<Rendered, Error> {
         check_pixels(self.size, pixels, colors.len())?;
-        self.gpu.guarded(|| self.list(pixels, colors))
+        self.gpu.device.guarded(|| self.list(pixels, colors))
     }
 
     fn list(&mut self, pixels: &[[u32; 2]], colors: &mut [[u8; 3]]) -> Result<Rendered, Error> {
@@ -44,7 +47,7 @@ impl GpuRenderer<'_, Pixels> {
             if self.walks_at_once_instead(&statuses) {
                 continue;
             }
-            rendered.add(statuses.checked(self.gpu)?);
+            rendered.add(statuses.checked(&self.gpu.device)?);
             self.add_rays(&work, end - start, |_| true)?;
             self.work = Some(work);
             self.set_pace((end - start).div_ceil(TILE_PIXELS), took);
@@ -64,7 +67,7 @@ impl GpuRenderer<'_, Pixels> {
     ) -> Result<Statuses, Error> {
         let start = Instant::now();
         let dispatch_bits = self.dispatch_bits();
-        let statuses = work.pixels.read(self.gpu, places.len(), |values| {
+        let statuses = work.pixels.read(&self.gpu.device, places.len(), |values| {
             let mut statuses = Statuses::of(dispatch_bits);
             for (value, &place) in values.iter().zip(places) {
                 let [r, g, b, status] = value.to_le_bytes();

@@ -2,9 +2,10 @@
 
 use rayon::prelude::*;
 
-use super::{Rendered, TILE_PIXELS};
-use crate::gpu::device::Gpu;
-use crate::gpu::error::Error;
+use super::rendered::Rendered;
+use super::tiles::TILE_PIXELS;
+use crate::gpu::device::error::Error;
+use crate::gpu::device::open::Device;
 use crate::tiles::TILE;
 
 /// How many pixels say what of themselves: `STATUS_*` of `shaders/quantize.wgsl`.
@@ -56,11 +57,11 @@ impl Statuses {
     }
 
     /// What they say together; an error where the device has left out pixels.
-    pub(super) fn checked(self, gpu: &Gpu) -> Result<Rendered, Error> {
+    pub(super) fn checked(self, device: &Device) -> Result<Rendered, Error> {
         match self.missing {
             0 => Ok(self.rendered),
             missing => {
-                Err(Error::Wrong(format!("{} has left out {missing} pixels of a dispatch without a word", gpu.info)))
+                Err(Error::Wrong(format!("{} has left out {missing} pixels of a dispatch without a word", device.info)))
             }
         }
     }

@@ -4,11 +4,14 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
+use super::GpuRenderer;
 use super::order::{curve, dealt};
 use super::output::Rows;
 use super::place::{Statuses, place_tiles};
-use super::{GpuRenderer, Rendered, TILE_PIXELS, Work};
-use crate::gpu::error::Error;
+use super::rendered::Rendered;
+use super::tiles::TILE_PIXELS;
+use super::work::Work;
+use crate::gpu::device::error::Error;
 use crate::misuse::check_rows;
 use crate::tiles::TILE;
 
@@ -20,7 +23,7 @@ impl GpuRenderer<'_, Rows> {
     /// [`Error::Misuse`] where these are no rows of the picture.
     pub fn rows(&mut self, first: u32, rgb: &mut [u8]) -> Result<Rendered, Error> {
         let count = check_rows(self.size, first, rgb.len())?;
-        self.gpu.guarded(|| self.bands(first, count, rgb))
+        self.gpu.device.guarded(|| self.bands(first, count, rgb))
     }
 
     fn bands(&mut self, first: u32, count: u32, rgb: &mut [u8]) -> Result<Rendered, Error> {
@@ -59,7 +62,7 @@ impl GpuRenderer<'_, Rows> {
             if self.walks_at_once_instead(&statuses) {
                 continue;
             }
-            rendered.add(statuses.checked(self.gpu)?);
+            rendered.add(statuses.checked(&self.gpu.device)?);
             let end = [self.size.0, first + count];
             self.add_rays(&work, now.len() * TILE_PIXELS, |place| {
                 let ([left, top], place) = (now[place / TILE_PIXELS], (place % TILE_PIXELS) as u32);
@@ -79,7 +82,7 @@ impl GpuRenderer<'_, Rows> {
         let start = Instant::now();
         let (width, dispatch_bits) = (self.size.0, self.dispatch_bits());
         let place = |pixels: &[u32]| place_tiles(pixels, dispatch_bits, tiles, first, width, rgb);
-        let statuses = work.pixels.read(self.gpu, tiles.len() * TILE_PIXELS, place)?;
+        let statuses = work.pixels.read(&self.gpu.device, tiles.len() * TILE_PIXELS, place)?;
         self.times.read_back += start.elapsed();
         Ok(statuses)
     }

@@ -2,6 +2,8 @@
 
 use crate::tiles::TILE;
 
+/// Pixels of a tile.
+pub(super) const TILE_PIXELS: usize = (TILE * TILE) as usize;
 /// Tiles of a dispatch at the most: with their head they fill a uniform buffer.
 pub(super) const MAX_DISPATCH_TILES: u32 = 16_380;
 /// Bytes of the buffer: `Tiles` of `shaders/slots_tiles.wgsl`.

@@ -2,10 +2,9 @@
 
 use rayon::prelude::*;
 
-use super::device::Gpu;
+use super::contents::Contents;
 use super::error::Error;
-use super::pack::Contents;
-use super::shader::Textures;
+use super::open::Device;
 
 /// Bytes that a task packs at a time: whole elements of every size.
 const PIECE: usize = 192 << 9;
@@ -13,18 +12,18 @@ const PIECE: usize = 192 << 9;
 const BAND: usize = 160 * PIECE;
 
 /// A buffer with `contents` and zeros up to `size`, which is no less.
-pub(super) fn upload(
-    gpu: &Gpu,
+pub(crate) fn upload(
+    device: &Device,
     contents: &Contents,
     usage: wgpu::BufferUsages,
     size: usize,
 ) -> Result<wgpu::Buffer, Error> {
-    gpu.checked("filling buffers", || {
+    device.checked("filling buffers", || {
         let size = size.next_multiple_of(4) as u64;
         let create = |usage, mapped_at_creation| {
-            gpu.device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation })
+            device.raw.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation })
         };
-        if gpu.mappable && contents.len() > 0 {
+        if device.mappable && contents.len() > 0 {
             let buffer = create(usage | wgpu::BufferUsages::MAP_WRITE, true);
             if let Ok(mut view) = buffer.get_mapped_range_mut(..contents.len() as u64) {
                 write(contents, 0, view.slice(..));
@@ -36,44 +35,44 @@ pub(super) fn upload(
         for start in (0..contents.len()).step_by(BAND) {
             let len = BAND.min(contents.len() - start) as u64;
             let view =
-                wgpu::BufferSize::new(len).and_then(|len| gpu.queue.write_buffer_with(&buffer, start as u64, len));
+                wgpu::BufferSize::new(len).and_then(|len| device.queue.write_buffer_with(&buffer, start as u64, len));
             if let Some(mut view) = view {
                 write(contents, start, view.slice(..));
             }
             // Only then is the memory on the way free for the next band.
-            gpu.submit(None);
-            gpu.wait()?;
+            device.submit(None);
+            device.wait()?;
         }
         Ok(buffer)
     })?
 }
 
 /// A small buffer with `contents`.
-pub(super) fn small_buffer(gpu: &Gpu, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+pub(crate) fn small_buffer(device: &Device, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
     let size = contents.len().next_multiple_of(4).max(4);
     let mut whole = contents.to_vec();
     whole.resize(size, 0);
     let usage = usage | wgpu::BufferUsages::COPY_DST;
-    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+    let buffer = device.raw.create_buffer(&wgpu::BufferDescriptor {
         label: None,
         size: size as u64,
         usage,
         mapped_at_creation: false,
     });
-    gpu.queue.write_buffer(&buffer, 0, &whole);
+    device.queue.write_buffer(&buffer, 0, &whole);
     buffer
 }
 
 /// Texels in a row of a texture that stands for a buffer: as `place_of_texel` of `shaders/tables.wgsl` has it.
-pub(super) const ROW: u32 = 4096;
+pub(crate) const ROW: u32 = 4096;
 
 /// Greatest size of `contents` as such a texture, in bytes.
-pub(super) fn max_texels(gpu: &Gpu, texel_size: u64) -> u64 {
-    u64::from(ROW) * texel_size * u64::from(gpu.device.limits().max_texture_dimension_2d)
+pub(crate) fn max_texels(device: &Device, texel_size: u64) -> u64 {
+    u64::from(ROW) * texel_size * u64::from(device.raw.limits().max_texture_dimension_2d)
 }
 
 /// Texels of one, two or four `u32`.
-pub(super) fn texel_format(components: u32) -> wgpu::TextureFormat {
+pub(crate) fn texel_format(components: u32) -> wgpu::TextureFormat {
     match components {
         1 => wgpu::TextureFormat::R32Uint,
         2 => wgpu::TextureFormat::Rg32Uint,
@@ -82,22 +81,19 @@ pub(super) fn texel_format(components: u32) -> wgpu::TextureFormat {
 }
 
 /// A texture for so many bytes that kernels keep and read, in texels of one, two or four `u32`.
-pub(super) fn empty_texels(gpu: &Gpu, bytes: u64, components: u32) -> wgpu::TextureView {
-    let usage = table_usage(gpu) | wgpu::TextureUsages::STORAGE_BINDING;
+pub(crate) fn empty_texels(
+    device: &Device,
+    bytes: u64,
+    components: u32,
+    usage: wgpu::TextureUsages,
+) -> wgpu::TextureView {
+    let usage = usage | wgpu::TextureUsages::STORAGE_BINDING;
     let rows = bytes.div_ceil(u64::from(ROW * components * 4)) as u32;
-    texture(gpu, rows, texel_format(components), usage).create_view(&wgpu::TextureViewDescriptor::default())
+    texture(device, rows, texel_format(components), usage).create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-/// How kernels read it.
-fn table_usage(gpu: &Gpu) -> wgpu::TextureUsages {
-    match gpu.textures() {
-        Textures::Stored => wgpu::TextureUsages::STORAGE_BINDING,
-        Textures::Sampled => wgpu::TextureUsages::TEXTURE_BINDING,
-    }
-}
-
-fn texture(gpu: &Gpu, rows: u32, format: wgpu::TextureFormat, usage: wgpu::TextureUsages) -> wgpu::Texture {
-    gpu.device.create_texture(&wgpu::TextureDescriptor {
+fn texture(device: &Device, rows: u32, format: wgpu::TextureFormat, usage: wgpu::TextureUsages) -> wgpu::Texture {
+    device.raw.create_texture(&wgpu::TextureDescriptor {
         label: None,
         size: wgpu::Extent3d { width: ROW, height: rows, depth_or_array_layers: 1 },
         mip_level_count: 1,
@@ -110,24 +106,34 @@ fn texture(gpu: &Gpu, rows: u32, format: wgpu::TextureFormat, usage: wgpu::Textu
 }
 
 /// A texture with `contents` in reading order, in texels of one, two or four `u32`.
-pub(super) fn upload_texels(gpu: &Gpu, contents: &Contents, components: u32) -> Result<wgpu::TextureView, Error> {
-    gpu.checked("filling textures", || texels(gpu, contents, components))?
+pub(crate) fn upload_texels(
+    device: &Device,
+    contents: &Contents,
+    components: u32,
+    usage: wgpu::TextureUsages,
+) -> Result<wgpu::TextureView, Error> {
+    device.checked("filling textures", || texels(device, contents, components, usage))?
 }
 
 /// Likewise; what the device reports is the caller's.
-pub(super) fn texels(gpu: &Gpu, contents: &Contents, components: u32) -> Result<wgpu::TextureView, Error> {
+pub(crate) fn texels(
+    device: &Device,
+    contents: &Contents,
+    components: u32,
+    usage: wgpu::TextureUsages,
+) -> Result<wgpu::TextureView, Error> {
     let format = texel_format(components);
     let row = (ROW * components * 4) as usize;
     // Whole rows of whole elements of every size.
     let band = BAND.next_multiple_of(3 * row);
     let extent = |rows: usize| wgpu::Extent3d { width: ROW, height: rows as u32, depth_or_array_layers: 1 };
-    let usage = table_usage(gpu) | wgpu::TextureUsages::COPY_DST;
-    let texture = texture(gpu, contents.len().div_ceil(row).max(1) as u32, format, usage);
+    let usage = usage | wgpu::TextureUsages::COPY_DST;
+    let texture = texture(device, contents.len().div_ceil(row).max(1) as u32, format, usage);
     let mut on_the_way = None;
     for start in (0..contents.len()).step_by(band) {
         let len = band.min(contents.len() - start);
         let rows = len.div_ceil(row);
-        let staging = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        let staging = device.raw.create_buffer(&wgpu::BufferDescriptor {
             label: None,
             size: (rows * row) as u64,
             // Without MAP_WRITE there would be one more buffer on the way to it.
@@ -138,7 +144,7 @@ pub(super) fn texels(gpu: &Gpu, contents: &Contents, components: u32) -> Result<
             write(contents, start, view.slice(..));
         }
         staging.unmap();
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let mut encoder = device.raw.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let source = wgpu::TexelCopyBufferInfo {
             buffer: &staging,
             layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row as u32), rows_per_image: None },
@@ -146,10 +152,10 @@ pub(super) fn texels(gpu: &Gpu, contents: &Contents, components: u32) -> Result<
         let origin = wgpu::Origin3d { y: (start / row) as u32, ..wgpu::Origin3d::ZERO };
         let target = wgpu::TexelCopyTextureInfo { origin, ..texture.as_image_copy() };
         encoder.copy_buffer_to_texture(source, target, extent(rows));
-        let submission_index = Some(gpu.submit(Some(encoder.finish())));
+        let submission = device.submit(Some(encoder.finish()));
         // One band is packed while the one before is copied; only then is the memory on the way free for the next.
-        if let Some(before) = on_the_way.replace(submission_index) {
-            gpu.wait_until(before)?;
+        if let Some(before) = on_the_way.replace(submission) {
+            device.wait_until(Some(&before))?;
         }
     }
     Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))

@@ -2,14 +2,16 @@
 
 use std::path::PathBuf;
 
-use super::compute::Job;
-use super::device::Gpu;
-use super::error::Error;
-use super::layout::single::Params;
-use super::shader::Module;
-use super::stage::Access;
-use crate::cache;
 use serde::Serialize;
+
+use super::compute::Job;
+use crate::cache;
+use crate::gpu::device::error::Error;
+use crate::gpu::facade::Gpu;
+use crate::gpu::kernel::shader::{Kernel, Module};
+use crate::gpu::kernel::stage::Access;
+use crate::gpu::table::layout::single::Params;
+use crate::precision::Tier;
 
 /// Pairs that are transformed.
 const PAIRS: usize = 1 << 18;
@@ -50,7 +52,7 @@ impl SelfTest {
     }
 
     /// Refuses a device that fails; a device that passed with this driver and shader is not asked again.
-    pub(super) fn require(gpu: &Gpu) -> Result<(), Error> {
+    fn require(gpu: &Gpu) -> Result<(), Error> {
         let record = record_of_pass(gpu);
         if record.as_ref().is_some_and(|file| std::fs::read(file).is_ok_and(|text| text == PASSED)) {
             return Ok(());
@@ -62,7 +64,7 @@ impl SelfTest {
                 "{} does not keep error-free transforms: of {pairs} pairs, {sum_mismatches} sums and \
                  {product_mismatches} products are off. Precision `robust` needs them, and `double` where a \
                  device has no f64; `--device cpu` does not",
-                gpu.info
+                gpu.device.info
             )));
         }
         // Without a cache folder the test, which takes milliseconds, is simply made again.
@@ -75,9 +77,21 @@ impl SelfTest {
     }
 }
 
+impl Gpu {
+    /// The kernel that keeps the promise of `tier` on this device; a refusal says why there is none.
+    pub fn kernel(&self, tier: Tier) -> Result<Kernel, Error> {
+        match tier {
+            Tier::Fast => Ok(Kernel::Tier(tier)),
+            Tier::Robust => SelfTest::require(self).map(|()| Kernel::Tier(tier)),
+            Tier::Double if self.device.info.f64 => Ok(Kernel::Tier(tier)),
+            Tier::Double => SelfTest::require(self).map(|()| Kernel::Pairs),
+        }
+    }
+}
+
 /// The file that stands for a pass of this device, driver and shader, in the user's cache folder.
 fn record_of_pass(gpu: &Gpu) -> Option<PathBuf> {
-    let info = &gpu.info;
+    let info = &gpu.device.info;
     let key = cache::key(&[&info.name, &info.driver, &info.pci, &Module::selftest().text]);
     Some(cache::folder()?.join(format!("transforms-{key}")))
 }
@@ -128,5 +142,5 @@ fn transform(gpu: &Gpu, operands: &[[f32; 2]]) -> Result<Vec<u32>, Error> {
         output_len: operands.len() * 4,
         groups: (PAIRS / GROUP) as u32,
     };
-    job.run(gpu)
+    job.run(gpu.compiler())
 }

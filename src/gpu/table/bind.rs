@@ -1,30 +1,35 @@
 //! The buffers and textures of a scene, and whether a device holds them.
 
-use super::device::Gpu;
-use super::error::Error;
-use super::pack::{Contents, Packed};
-use super::pipeline::Specialisation;
-use super::stage::Resource;
-use super::upload::{max_texels, upload, upload_texels};
+use super::pack::Packed;
 use crate::accel::Acceleration;
+use crate::gpu::device::contents::Contents;
+use crate::gpu::device::error::Error;
+use crate::gpu::device::open::Device;
+use crate::gpu::device::upload::{max_texels, upload, upload_texels};
+use crate::gpu::kernel::shader::Textures;
+use crate::gpu::kernel::specialisation::Specialisation;
+use crate::gpu::kernel::stage::{Resource, table_usage};
 
 /// The textures of the lists, by binding.
-pub(super) fn list_resources(gpu: &Gpu, [cells, entries]: &[Contents; 2]) -> Result<Vec<(u32, Resource)>, Error> {
-    Ok(vec![
-        (13, Resource::Texels(upload_texels(gpu, cells, 2)?)),
-        (17, Resource::Texels(upload_texels(gpu, entries, 2)?)),
-    ])
+pub(crate) fn list_resources(
+    device: &Device,
+    textures: Textures,
+    [cells, entries]: &[Contents; 2],
+) -> Result<Vec<(u32, Resource)>, Error> {
+    let texels = |contents| upload_texels(device, contents, 2, table_usage(textures)).map(Resource::Texels);
+    Ok(vec![(13, texels(cells)?), (17, texels(entries)?)])
 }
 
 /// Whether the device has room for the shapes in the order of the grid's lists.
-pub(super) fn copies_fit(gpu: &Gpu, packed: &Packed, accel: &Acceleration) -> bool {
+pub(crate) fn copies_fit(device: &Device, packed: &Packed, accel: &Acceleration) -> bool {
     let entries = accel.grid.as_ref().map_or(0, |grid| grid.lists.entries.len());
-    (entries * packed.shapes[0].element_size()) as u64 <= max_texels(gpu, 16)
+    (entries * packed.shapes[0].element_size()) as u64 <= max_texels(device, 16)
 }
 
 /// The textures of the shapes in the order of the grid's lists, by binding, where kernels read them so.
-pub(super) fn copy_resources(
-    gpu: &Gpu,
+pub(crate) fn copy_resources(
+    device: &Device,
+    textures: Textures,
     packed: &Packed,
     accel: &Acceleration,
     specialisation: &Specialisation,
@@ -33,7 +38,8 @@ pub(super) fn copy_resources(
     let texels = |half: &Contents, entries: &[u32]| {
         // Packed once: to pack the spheres in any order takes far longer than to copy them so.
         let all = half.bytes();
-        upload_texels(gpu, &Contents::gathered(&all, half.element_size(), entries), 4).map(Resource::Texels)
+        let contents = Contents::gathered(&all, half.element_size(), entries);
+        upload_texels(device, &contents, 4, table_usage(textures)).map(Resource::Texels)
     };
     let [first, second] = &packed.shapes;
     let entries = &grid.lists.entries;
@@ -44,16 +50,17 @@ pub(super) fn copy_resources(
 }
 
 /// The buffers and textures of the scene, by binding, beside those of the lists.
-pub(super) fn scene_resources(
-    gpu: &Gpu,
+pub(crate) fn scene_resources(
+    device: &Device,
+    textures: Textures,
     packed: &Packed,
     specialisation: &Specialisation,
 ) -> Result<Vec<(u32, Resource)>, Error> {
     let (storage, uniform) = (wgpu::BufferUsages::STORAGE, wgpu::BufferUsages::UNIFORM);
     // A binding of size 0 is not allowed.
     let filled =
-        |contents: &Contents, usage| upload(gpu, contents, usage, contents.len().max(64)).map(Resource::Buffer);
-    let texels = |contents: &Contents| upload_texels(gpu, contents, 4).map(Resource::Texels);
+        |contents: &Contents, usage| upload(device, contents, usage, contents.len().max(64)).map(Resource::Buffer);
+    let texels = |contents: &Contents| upload_texels(device, contents, 4, table_usage(textures)).map(Resource::Texels);
     let none = Contents::none();
     let second_half = |half| texels(if specialisation.reads_shape_ends() { half } else { &none });
     let mut resources = vec![
@@ -77,13 +84,13 @@ pub(super) fn scene_resources(
 /// What the tables of a scene take, each with what the device holds of its kind.
 type Sizes = Vec<(&'static str, usize, u64)>;
 
-fn list_sizes(gpu: &Gpu, [cells, entries]: &[Contents; 2]) -> Sizes {
-    vec![("cells with lists", cells.len(), max_texels(gpu, 8)), ("lists", entries.len(), max_texels(gpu, 8))]
+fn list_sizes(device: &Device, [cells, entries]: &[Contents; 2]) -> Sizes {
+    vec![("cells with lists", cells.len(), max_texels(device, 8)), ("lists", entries.len(), max_texels(device, 8))]
 }
 
 /// Whether the device has no room for these lists.
-pub(super) fn are_too_large(gpu: &Gpu, lists: &[Contents; 2]) -> bool {
-    too_large(&list_sizes(gpu, lists)).is_some()
+pub(crate) fn are_too_large(device: &Device, lists: &[Contents; 2]) -> bool {
+    too_large(&list_sizes(device, lists)).is_some()
 }
 
 /// The first that is too large.
@@ -92,10 +99,10 @@ fn too_large(sizes: &Sizes) -> Option<&(&'static str, usize, u64)> {
 }
 
 /// Refuses a scene whose tables are larger than the device's bindings and textures.
-pub(super) fn check_fits(gpu: &Gpu, packed: &Packed, lists: &[Contents; 2]) -> Result<(), Error> {
-    let buffer = gpu.info.max_storage_binding.min(gpu.info.max_buffer);
-    let texels = max_texels(gpu, 16);
-    let mut sizes = list_sizes(gpu, lists);
+pub(crate) fn check_fits(device: &Device, packed: &Packed, lists: &[Contents; 2]) -> Result<(), Error> {
+    let buffer = device.info.max_storage_binding.min(device.info.max_buffer);
+    let texels = max_texels(device, 16);
+    let mut sizes = list_sizes(device, lists);
     sizes.extend([
         // Paths keep the index of a sphere as a number, exact in `f32` up to 2²⁴.
         ("spheres", packed.materials.len(), texels.min((packed.materials.element_size() as u64) << 24)),
@@ -108,7 +115,7 @@ pub(super) fn check_fits(gpu: &Gpu, packed: &Packed, lists: &[Contents; 2]) -> R
         None => Ok(()),
         Some((what, size, limit)) => Err(Error::NoDevice(format!(
             "the {what} of this scene take {size} bytes, but {} holds {limit} at the most; `--device cpu` has no such limit",
-            gpu.info
+            device.info
         ))),
     }
 }

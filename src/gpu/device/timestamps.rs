@@ -2,12 +2,12 @@
 
 use std::time::Duration;
 
-use super::device::Gpu;
 use super::error::Error;
+use super::open::Device;
 
 /// Two timestamps, at the begin and the end of a compute pass, and where the host reads them.
 #[derive(Debug)]
-pub(super) struct Timestamps {
+pub(crate) struct Timestamps {
     queries: wgpu::QuerySet,
     resolved: wgpu::Buffer,
     host: wgpu::Buffer,
@@ -20,26 +20,26 @@ const SIZE: u64 = 16;
 
 impl Timestamps {
     /// For a device with timestamp queries; `None` without.
-    pub(super) fn new(gpu: &Gpu) -> Option<Self> {
-        if !gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
+    pub(crate) fn new(device: &Device) -> Option<Self> {
+        if !device.raw.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
             return None;
         }
         let buffer = |usage| {
             let descriptor = wgpu::BufferDescriptor { label: None, size: SIZE, usage, mapped_at_creation: false };
-            gpu.device.create_buffer(&descriptor)
+            device.raw.create_buffer(&descriptor)
         };
-        let queries = gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
+        let queries = device.raw.create_query_set(&wgpu::QuerySetDescriptor {
             label: None,
             ty: wgpu::QueryType::Timestamp,
             count: 2,
         });
         let resolved = buffer(wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC);
         let host = buffer(wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
-        Some(Self { queries, resolved, host, period: f64::from(gpu.queue.get_timestamp_period()) })
+        Some(Self { queries, resolved, host, period: f64::from(device.queue.get_timestamp_period()) })
     }
 
     /// What a compute pass writes.
-    pub(super) fn writes(&self) -> wgpu::ComputePassTimestampWrites<'_> {
+    pub(crate) fn writes(&self) -> wgpu::ComputePassTimestampWrites<'_> {
         wgpu::ComputePassTimestampWrites {
             query_set: &self.queries,
             beginning_of_pass_write_index: Some(0),
@@ -48,18 +48,18 @@ impl Timestamps {
     }
 
     /// Lets the device hand over what the pass wrote.
-    pub(super) fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
+    pub(crate) fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
         encoder.resolve_query_set(&self.queries, 0..2, &self.resolved, 0);
         encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.host, 0, SIZE);
     }
 
     /// From the begin to the end of the last pass, once the device is done with it.
-    pub(super) fn elapsed(&self, gpu: &Gpu) -> Result<Duration, Error> {
+    pub(crate) fn elapsed(&self, device: &Device) -> Result<Duration, Error> {
         let slice = self.host.slice(..);
         // The result also comes as an error of the range below.
         slice.map_async(wgpu::MapMode::Read, |_| ());
-        gpu.wait()?;
-        let lost = |why: String| Error::Lost(format!("reading timestamps from {}: {why}", gpu.info));
+        device.wait()?;
+        let lost = |why: String| Error::Lost(format!("reading timestamps from {}: {why}", device.info));
         let ticks = {
             let view = slice.get_mapped_range().map_err(|e| lost(e.to_string()))?;
             let ticks: &[u64] = bytemuck::cast_slice(&view);

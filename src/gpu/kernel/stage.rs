@@ -1,19 +1,20 @@
 //! A compiled kernel: the only place that makes pipelines, for pictures and for everything else.
 
-use super::calls::Call;
-use super::device::Gpu;
-use super::error::Error;
-use super::kernel_cache::KernelCache;
+use super::cache::KernelCache;
+use super::compiler::Compiler;
 use super::shader::Textures;
 use super::spirv::Parsed;
-use super::upload::texel_format;
+use crate::gpu::device::calls::Call;
+use crate::gpu::device::error::Error;
+use crate::gpu::device::open::Device;
+use crate::gpu::device::upload::texel_format;
 
 /// Textures that a kernel reads and writes at the most, whatever it is specialised for.
-pub(super) const MAX_TEXTURES: u32 = 13;
+pub(crate) const MAX_TEXTURES: u32 = 13;
 
 /// How a binding is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Access {
+pub(crate) enum Access {
     Uniform,
     Read,
     ReadWrite,
@@ -53,9 +54,17 @@ impl Access {
     }
 }
 
+/// How kernels read the textures of a table.
+pub(crate) fn table_usage(textures: Textures) -> wgpu::TextureUsages {
+    match textures {
+        Textures::Stored => wgpu::TextureUsages::STORAGE_BINDING,
+        Textures::Sampled => wgpu::TextureUsages::TEXTURE_BINDING,
+    }
+}
+
 /// What a binding is bound to.
 #[derive(Debug, Clone)]
-pub(super) enum Resource {
+pub(crate) enum Resource {
     Buffer(wgpu::Buffer),
     Texels(wgpu::TextureView),
 }
@@ -71,21 +80,22 @@ impl Resource {
 
 /// A compiled kernel and the bindings that it reads and writes.
 #[derive(Debug)]
-pub(super) struct Stage {
-    pub(super) pipeline: wgpu::ComputePipeline,
+pub(crate) struct Stage {
+    pub(crate) pipeline: wgpu::ComputePipeline,
     layout: wgpu::BindGroupLayout,
     bindings: Vec<u32>,
 }
 
 impl Stage {
     /// Compiles this entry point of `module` with these constants; `bindings` are all that it uses.
-    pub(super) fn new(
-        gpu: &Gpu,
+    pub(crate) fn new(
+        compiler: Compiler,
         module: &Parsed,
         entry_point: &str,
         constants: &[(&str, f64)],
         bindings: &[(u32, Access)],
     ) -> Result<Self, Error> {
+        let device = compiler.device;
         let entry = |&(binding, access): &(u32, Access)| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: wgpu::ShaderStages::COMPUTE,
@@ -93,58 +103,58 @@ impl Stage {
             count: None,
         };
         debug_assert!(bindings.iter().filter(|(_, access)| access.is_texture()).count() <= MAX_TEXTURES as usize);
-        let most = gpu.device.limits().max_storage_buffers_per_shader_stage;
+        let most = device.raw.limits().max_storage_buffers_per_shader_stage;
         let buffers = bindings.iter().filter(|(_, access)| matches!(access, Access::Read | Access::ReadWrite)).count();
         if buffers > most as usize {
             let limit = "max_storage_buffers_per_shader_stage";
             let message =
-                format!("{} is too small for {entry_point}: {limit} is {most}, and it uses {buffers}", gpu.info);
+                format!("{} is too small for {entry_point}: {limit} is {most}, and it uses {buffers}", device.info);
             return Err(Error::NoDevice(message));
         }
         let entries: Vec<_> = bindings.iter().map(entry).collect();
         let mut bindings: Vec<_> = bindings.iter().map(|(binding, _)| *binding).collect();
         bindings.sort_unstable();
-        let module = gpu.kernel_module(module, entry_point, constants, &bindings)?;
-        gpu.checked("compiling the kernels", || {
+        let module = compiler.module(module, entry_point, constants, &bindings)?;
+        device.checked("compiling the kernels", || {
             let descriptor = wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries };
-            let layout = gpu.device.create_bind_group_layout(&descriptor);
-            let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            let layout = device.raw.create_bind_group_layout(&descriptor);
+            let pipeline_layout = device.raw.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: None,
                 bind_group_layouts: &[Some(&layout)],
                 immediate_size: 0,
             });
             let _call = Call::begin();
-            let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            let pipeline = device.raw.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                 label: Some(entry_point),
                 layout: Some(&pipeline_layout),
                 module: &module,
                 entry_point: Some(entry_point),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
-                cache: gpu.kernel_cache.as_ref().map(KernelCache::handle),
+                cache: compiler.cache.map(KernelCache::handle),
             });
             Self { pipeline, layout, bindings }
         })
     }
 
     /// Binds those of `resources` that the kernel uses.
-    pub(super) fn bind(&self, gpu: &Gpu, resources: &[(u32, Resource)]) -> wgpu::BindGroup {
+    pub(crate) fn bind(&self, device: &Device, resources: &[(u32, Resource)]) -> wgpu::BindGroup {
         let used = resources.iter().filter(|(binding, _)| self.bindings.contains(binding));
         let entries: Vec<_> = used
             .map(|(binding, resource)| wgpu::BindGroupEntry { binding: *binding, resource: resource.as_binding() })
             .collect();
         let descriptor = wgpu::BindGroupDescriptor { label: None, layout: &self.layout, entries: &entries };
-        gpu.device.create_bind_group(&descriptor)
+        device.raw.create_bind_group(&descriptor)
     }
 
     /// Runs the kernel with what is bound, in so many workgroups side by side and above each other: a submission of its own.
-    pub(super) fn dispatch(&self, gpu: &Gpu, group: &wgpu::BindGroup, [across, down]: [u32; 2]) {
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    pub(crate) fn dispatch(&self, device: &Device, group: &wgpu::BindGroup, [across, down]: [u32; 2]) {
+        let mut encoder = device.raw.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             pass.set_pipeline(&self.pipeline);
             pass.set_bind_group(0, group, &[]);
             pass.dispatch_workgroups(across, down, 1);
         }
-        gpu.submit(Some(encoder.finish()));
+        device.submit(Some(encoder.finish()));
     }
 }

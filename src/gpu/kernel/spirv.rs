@@ -38,7 +38,7 @@ impl Parsed {
     }
 
     /// From now on drivers may fuse, reorder and leave out operations: for study only.
-    pub(super) fn contractible(self) -> Self {
+    pub(crate) fn contractible(self) -> Self {
         Self { contractible: true, ..self }
     }
 

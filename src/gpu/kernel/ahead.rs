@@ -1,16 +1,19 @@
 //! What can be done for a picture before there is a device to do it on: opening one takes longer than reading most scenes.
 
-use super::device::SOFTWARE_LADDER;
-use super::pipeline::Specialisation;
 use super::shader::{Kernel, Textures, Variant};
+use super::specialisation::Specialisation;
 use super::spirv::Parsed;
 use crate::accel::Acceleration;
 use crate::effects::Effects;
 use crate::geometry::in_range;
-use crate::precision::{Request, Selection};
+use crate::precision::{Request, Selection, Tier};
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::tuning::{Class, Tuning};
+
+/// Software devices calculate in `f64` at little more than the price of `f32`, far below that of error-free transforms; hardware
+/// has few `f64` units.
+pub(crate) const SOFTWARE_LADDER: [Tier; 3] = [Tier::Fast, Tier::Double, Tier::Robust];
 
 /// With more spheres, looking at the scene takes longer than a device takes to open.
 const MAX_SPHERES: usize = 2000;

@@ -19,7 +19,7 @@ struct Part {
 
 macro_rules! part {
     ($name:literal) => {
-        Part { name: $name, text: Cow::Borrowed(include_str!(concat!("../../shaders/", $name))) }
+        Part { name: $name, text: Cow::Borrowed(include_str!(concat!("../../../shaders/", $name))) }
     };
 }
 

@@ -1,19 +1,12 @@
-//! From effects to compiled kernels: the only place that sets the constants of `shaders/effects.wgsl`.
+//! From effects to constants of kernels: the only place that sets those of `shaders/effects.wgsl`.
 
 use std::num::NonZeroU32;
 
-use super::device::Gpu;
-use super::error::Error;
-use super::pack::material_vectors;
 use super::shader::{Kernel, Module, Places, Slots, Storage, Textures, Variant, Walk};
-use super::spirv::Parsed;
-use super::stage::Access::{Read, ReadWrite, Table, Texels, Uniform};
-use super::stage::{Access, Stage};
 use crate::accel::Grid;
 use crate::effects::{Effect, EffectSet, Effects};
 use crate::scene::Scene;
 use crate::settings::{Settings, Specular};
-use crate::threads::at_once;
 use crate::tuning::Tuning;
 
 /// What a pipeline is specialised for.
@@ -79,7 +72,7 @@ impl Specialisation {
     }
 
     /// For the grid that rays which leave a surface look through, if there are any.
-    pub(super) fn with_grid(self, grid: Option<&Grid>, tuning: &Tuning) -> Self {
+    pub(crate) fn with_grid(self, grid: Option<&Grid>, tuning: &Tuning) -> Self {
         // Without such rays nobody looks for any sphere.
         let Some(grid) = grid else { return Self { places: Places::Large, sphere_count: 1, ..self } };
         let places = match grid.large().len() {
@@ -100,18 +93,18 @@ impl Specialisation {
     }
 
     /// What decides the text of its kernels.
-    pub(super) fn variant(&self) -> Variant {
+    pub(crate) fn variant(&self) -> Variant {
         let Self { kernel, storage, places, refraction, slots, walk, .. } = *self;
         Variant { kernel, storage, places, samples: self.samples > 1, refraction, slots, walk }
     }
 
     /// Whether the intersection reads second halves of shapes.
-    pub(super) fn reads_shape_ends(&self) -> bool {
+    pub(crate) fn reads_shape_ends(&self) -> bool {
         self.effects.has(Effect::Ellipsoids) || self.shared_surfaces
     }
 
     /// Vectors that keep a path: as `shaders/paths.wgsl` has them.
-    pub(super) fn path_vectors(&self) -> u64 {
+    pub(crate) fn path_vectors(&self) -> u64 {
         4 + u64::from(self.kernel.carries_low())
     }
 
@@ -150,22 +143,22 @@ impl Specialisation {
     }
 
     /// Bytes that keep a path.
-    pub(super) fn path_size(&self) -> u64 {
+    pub(crate) fn path_size(&self) -> u64 {
         self.path_vectors() * if self.kernel.is_double() { 32 } else { 16 }
     }
 
     /// Bytes of the colour of a sample.
-    pub(super) fn color_size(&self) -> u64 {
+    pub(crate) fn color_size(&self) -> u64 {
         if self.kernel.is_double() { 32 } else { 16 }
     }
 
     /// Whether paths are kept from bounce to bounce.
-    pub(super) fn keeps_paths(&self) -> bool {
+    pub(crate) fn keeps_paths(&self) -> bool {
         self.refraction.is_none() && self.walk != Walk::InPlace
     }
 
     /// Whether the loops of an invocation walk more than one bounce of one path.
-    pub(super) fn shares_turns(&self) -> bool {
+    pub(crate) fn shares_turns(&self) -> bool {
         self.refraction.is_none() && self.effects.has(Effect::Reflections) && self.walk != Walk::AtOnce
     }
 
@@ -175,104 +168,7 @@ impl Specialisation {
     }
 }
 
-/// The entry point that casts the primary rays of tiles.
-pub const SEE_TILES: &str = "see_tiles";
-/// The entry point that casts the primary rays of a list of pixels.
-pub const SEE_SAMPLES: &str = "see_samples";
-/// The entry point that casts the reflection rays of paths.
-pub const WALK_PATHS: &str = "walk_paths";
-
-/// The entry point that shades what they have met, where several share an invocation.
-pub const SHADE_PATHS: &str = "shade_paths";
-
-/// The kernels of a bounce of the paths.
-#[derive(Debug)]
-pub(super) struct Bounce {
-    /// What goes before.
-    pub(super) begin: Stage,
-    pub(super) walk: Stage,
-    /// Where walking leaves shading to another kernel.
-    pub(super) shade: Option<Stage>,
-}
-
-/// The kernels of a picture.
-#[derive(Debug)]
-pub(super) struct Stages {
-    pub(super) see: Stage,
-    /// Where paths are kept.
-    pub(super) bounce: Option<Bounce>,
-    /// From samples to pixels, where there are several a pixel.
-    pub(super) resolve: Option<Stage>,
-}
-
-/// Compiles the kernels of a picture.
-pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stages, Error> {
-    let constants = specialisation.constants();
-    let parsed = |module: &Module| Parsed::new(module).map_err(Error::Lost);
-    let own;
-    let module = if let Some(module) = gpu.ahead.as_ref().and_then(|ahead| ahead.module(specialisation)) {
-        module
-    } else {
-        own = parsed(&specialisation.module())?;
-        &own
-    };
-    let Storage::Tables(textures) = specialisation.storage else {
-        return Err(Error::Lost("only scenes in tables are rendered".into()));
-    };
-    let [words, pairs, vectors] = [1, 2, 4].map(|components| Table(textures, components));
-    // What every stage reads and writes.
-    let mut common = vec![(0, Uniform), (7, ReadWrite), (8, ReadWrite), (13, pairs), (17, pairs)];
-    common.extend([1, 2, 3, 14, 20].map(|binding| (binding, vectors)));
-    if specialisation.kernel.carries_low() {
-        common.extend([9, 10, 21].map(|binding| (binding, vectors)));
-    }
-    if specialisation.refraction.is_some() {
-        common.push((5, Read));
-    }
-    if specialisation.keeps_paths() {
-        common.extend([(12, ReadWrite), (18, Texels(4)), (19, Uniform)]);
-    }
-    let (see_entry, places) = match specialisation.slots {
-        Slots::Tiles => (SEE_TILES, Uniform),
-        Slots::List => (SEE_SAMPLES, Read),
-    };
-    common.push((6, places));
-    let primary = [(4, vectors)];
-    let kernel = |entry_point, own: &[(u32, Access)]| {
-        Stage::new(gpu, module, entry_point, &constants, &[&common[..], own].concat())
-    };
-    let between = || {
-        let module = parsed(&Module::between_stages())?;
-        let mut group = vec![("GROUP", f64::from(specialisation.workgroup))];
-        group.extend(constants.iter().filter(|(name, _)| *name == "PATHS"));
-        Stage::new(gpu, &module, "begin_bounce", &group, &[(12, ReadWrite), (16, ReadWrite)])
-    };
-    let resolve = || {
-        if specialisation.samples == 1 {
-            return Ok(None);
-        }
-        let module = parsed(&Module::resolve(specialisation.kernel))?;
-        let constants = [("SAMPLES", f64::from(specialisation.samples))];
-        Stage::new(gpu, &module, "resolve", &constants, &[(0, Uniform), (7, Read), (15, ReadWrite)]).map(Some)
-    };
-    let copies: &[(u32, Access)] =
-        if specialisation.variant().copies() { &[(24, vectors), (25, vectors)] } else { &[] };
-    // A driver compiles a kernel on the thread that asks for it: side by side. The largest one goes here, since allocating is
-    // cheapest on the main thread.
-    let see = || kernel(see_entry, &primary);
-    if !specialisation.keeps_paths() {
-        return Ok(Stages { see: see()?, bounce: None, resolve: resolve()? });
-    }
-    let bounce = || -> Result<Bounce, Error> {
-        if let Walk::InTurn(_) = specialisation.walk {
-            let shade = || gpu.guarded(|| kernel(SHADE_PATHS, &[(11, vectors), (22, words)]));
-            let walk = || kernel(WALK_PATHS, &[&[(11, vectors), (23, Texels(1))][..], copies].concat());
-            let (shade, (walk, begin)) = at_once(shade, || (walk(), between()));
-            Ok(Bounce { begin: begin?, walk: walk?, shade: Some(shade?) })
-        } else {
-            Ok(Bounce { begin: between()?, walk: kernel(WALK_PATHS, &[(11, vectors)])?, shade: None })
-        }
-    };
-    let (see, (bounce, resolve)) = at_once(|| gpu.guarded(see), || (bounce(), resolve()));
-    Ok(Stages { see: see?, bounce: Some(bounce?), resolve: resolve? })
+/// Vectors of a material, as `shaders/many.wgsl` has it: all three, or all but the way out of object space.
+pub(crate) fn material_vectors(effects: EffectSet) -> usize {
+    if effects.has(Effect::Ellipsoids) { 3 } else { 2 }
 }

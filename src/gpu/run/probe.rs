@@ -7,20 +7,20 @@ use std::time::{Duration, Instant};
 
 use glam::DVec3;
 
-use super::device::Gpu;
-use super::error::Error;
-use super::layout::{Layout, ListValues, ParamValues, ShapeValues, double, single};
-use super::pack::{bytes, low_light, low_shape, shape_value};
-use super::pipeline::Specialisation;
-use super::readable::Readable;
-use super::shader::{Kernel, Module, Places, Slots, Storage, Walk};
-use super::spirv::Parsed;
-use super::stage::Access::{Read, ReadWrite, Uniform};
-use super::stage::{Access, Resource, Stage};
-use super::upload::small_buffer;
 use crate::camera::NEAR_T_MIN;
 use crate::effects::{Effect, EffectSet};
 use crate::geometry::{Ellipsoid, range_factor, shape_indices};
+use crate::gpu::device::error::Error;
+use crate::gpu::device::readable::Readable;
+use crate::gpu::device::upload::small_buffer;
+use crate::gpu::facade::Gpu;
+use crate::gpu::kernel::shader::{Kernel, Module, Places, Slots, Storage, Walk};
+use crate::gpu::kernel::specialisation::Specialisation;
+use crate::gpu::kernel::spirv::Parsed;
+use crate::gpu::kernel::stage::Access::{Read, ReadWrite, Uniform};
+use crate::gpu::kernel::stage::{Access, Resource, Stage};
+use crate::gpu::table::layout::{Layout, ListValues, ParamValues, ShapeValues, double, single};
+use crate::gpu::table::pack::{bytes, low_light, low_shape, shape_value};
 use crate::scene::{Light, Sphere};
 
 /// Rays of a dispatch at the most: some milliseconds on the slowest device seen.
@@ -258,7 +258,7 @@ impl<'a> Prober<'a> {
     /// Answers `question` for every ray of `batch`, in order; [`Error::Misuse`] where the parts of the batch do not fit together.
     pub fn ask(&mut self, question: Question, batch: &Batch) -> Result<Vec<Answer>, Error> {
         batch.check(question)?;
-        self.gpu.guarded(|| self.ask_checked(question, batch))
+        self.gpu.device.guarded(|| self.ask_checked(question, batch))
     }
 
     fn ask_checked(&mut self, question: Question, batch: &Batch) -> Result<Vec<Answer>, Error> {
@@ -285,7 +285,7 @@ impl<'a> Prober<'a> {
     /// The nearest hit of every ray with its shape; [`Error::Misuse`] where there is not one for each.
     pub fn ask_raw(&mut self, batch: &RawBatch) -> Result<Vec<Answer>, Error> {
         batch.check()?;
-        self.gpu.guarded(|| self.ask_raw_checked(batch))
+        self.gpu.device.guarded(|| self.ask_raw_checked(batch))
     }
 
     fn ask_raw_checked(&mut self, batch: &RawBatch) -> Result<Vec<Answer>, Error> {
@@ -324,7 +324,7 @@ impl<'a> Prober<'a> {
         };
         let bindings = question.bindings(self.kernel.carries_low());
         let constants = specialisation.constants();
-        let stage = Stage::new(self.gpu, &self.module, question.entry_point(), &constants, &bindings)?;
+        let stage = Stage::new(self.gpu.compiler(), &self.module, question.entry_point(), &constants, &bindings)?;
         self.stages.insert((question, ellipsoids), stage);
         Ok(())
     }
@@ -339,17 +339,17 @@ impl<'a> Prober<'a> {
     ) -> Result<(), Error> {
         let (question, _) = asked;
         let Some(stage) = self.stages.get(&asked) else { return Ok(()) };
-        let gpu = self.gpu;
+        let device = &self.gpu.device;
         let padded = count.next_multiple_of(GROUP);
         let real = if self.kernel.is_double() { 8 } else { 4 };
         let params = if self.kernel.is_double() { params::<double::Layout>() } else { params::<single::Layout>() };
-        let flags = Readable::new(gpu, padded as u64 * 2);
+        let flags = Readable::new(device, padded as u64 * 2);
         let size = question.values();
-        let values = Readable::new(gpu, (padded * size * real / 4) as u64);
-        let group = gpu.checked("reserving buffers", || {
+        let values = Readable::new(device, (padded * size * real / 4) as u64);
+        let group = device.checked("reserving buffers", || {
             let buffer = |(binding, contents, usage): (u32, &[u8], wgpu::BufferUsages)| {
                 let contents = if contents.is_empty() { &[0; 256] } else { contents };
-                (binding, Resource::Buffer(small_buffer(gpu, contents, usage)))
+                (binding, Resource::Buffer(small_buffer(device, contents, usage)))
             };
             let storage = wgpu::BufferUsages::STORAGE;
             let inputs: [(u32, &[u8], wgpu::BufferUsages); 10] = [
@@ -366,14 +366,14 @@ impl<'a> Prober<'a> {
             ];
             let outputs = [(16, &flags), (17, &values)];
             let outputs = outputs.map(|(binding, output)| (binding, Resource::Buffer(output.buffer.clone())));
-            stage.bind(gpu, &inputs.into_iter().map(buffer).chain(outputs).collect::<Vec<_>>())
+            stage.bind(device, &inputs.into_iter().map(buffer).chain(outputs).collect::<Vec<_>>())
         })?;
         let start = Instant::now();
-        stage.dispatch(gpu, &group, [(padded / GROUP) as u32, 1]);
-        gpu.wait()?;
+        stage.dispatch(device, &group, [(padded / GROUP) as u32, 1]);
+        device.wait()?;
         self.busy += start.elapsed();
-        let flags = flags.read(gpu, count * 2, <[u32]>::to_vec)?;
-        let values = values.read(gpu, count * size * real / 4, <[u32]>::to_vec)?;
+        let flags = flags.read(device, count * 2, <[u32]>::to_vec)?;
+        let values = values.read(device, count * size * real / 4, <[u32]>::to_vec)?;
         let value = |i: usize| match real {
             4 => f64::from(f32::from_bits(values[i])),
             _ => f64::from_bits(u64::from(values[2 * i]) | (u64::from(values[2 * i + 1]) << 32)),

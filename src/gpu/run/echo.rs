@@ -1,14 +1,14 @@
 //! What the device reads of a packed scene, for the test that locks the layout.
 
 use super::compute::Job;
-use super::device::Gpu;
-use super::error::Error;
-use super::pack::Packed;
-use super::shader::{Kernel, Module};
-use super::stage::Access;
 use crate::accel::Acceleration;
 use crate::camera::Camera;
 use crate::effects::{EffectSet, Effects};
+use crate::gpu::device::error::Error;
+use crate::gpu::facade::Gpu;
+use crate::gpu::kernel::shader::{Kernel, Module};
+use crate::gpu::kernel::stage::Access;
+use crate::gpu::table::pack::Packed;
 use crate::misuse::{Misuse, check_picture};
 use crate::scene::Scene;
 use crate::settings::Settings;
@@ -53,5 +53,5 @@ pub fn echo_layout(
         output_len: head + sphere * scene.spheres.len() + light * scene.lights.len() + tail,
         groups: 1,
     };
-    job.run(gpu)
+    job.run(gpu.compiler())
 }

@@ -1,145 +1,46 @@
 //! From the scene to the bytes of its tables.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use bytemuck::Pod;
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::layout::{Layout, ListValues, ParamValues, ShapeValues, double, single};
-use super::shader::Kernel;
 use crate::accel::{Acceleration, Lists};
 use crate::camera::Camera;
-use crate::effects::{Effect, EffectSet, Effects};
+use crate::effects::{Effect, Effects};
 use crate::geometry::{Ellipsoid, ellipsoid};
+use crate::gpu::device::contents::Contents;
+use crate::gpu::kernel::shader::Kernel;
+use crate::gpu::kernel::specialisation::material_vectors;
 use crate::scene::{Light, Scene};
 use crate::settings::Settings;
 use crate::tiles::TILE;
 
-/// Packs the elements of a range.
-type Write<'a> = Box<dyn Fn(Range<usize>, &mut [u8]) + Sync + 'a>;
-
-/// What a buffer holds: elements that are packed when and where they are needed.
-pub(super) struct Contents<'a> {
-    /// Number of elements.
-    count: usize,
-    /// Bytes of an element.
-    size: usize,
-    write: Write<'a>,
-}
-
-impl<'a> Contents<'a> {
-    /// `count` elements of `element` by index.
-    fn new<T: Pod>(count: usize, element: impl Fn(usize) -> T + Sync + 'a) -> Self {
-        let write = move |range: Range<usize>, bytes: &mut [u8]| {
-            for (place, index) in bytes.chunks_exact_mut(size_of::<T>()).zip(range) {
-                place.copy_from_slice(bytemuck::bytes_of(&element(index)));
-            }
-        };
-        Self { count, size: size_of::<T>(), write: Box::new(write) }
-    }
-
-    /// Some of the bytes of each element.
-    fn part<T: Pod>(count: usize, part: Range<usize>, element: impl Fn(usize) -> T + Sync + 'a) -> Self {
-        let size = part.len();
-        let write = move |range: Range<usize>, bytes: &mut [u8]| {
-            for (place, index) in bytes.chunks_exact_mut(size).zip(range) {
-                place.copy_from_slice(&bytemuck::bytes_of(&element(index))[part.clone()]);
-            }
-        };
-        Self { count, size, write: Box::new(write) }
-    }
-
-    /// Elements of so many bytes, by their indices among those in `all`.
-    pub(super) fn gathered(all: &'a [u8], size: usize, indices: &'a [u32]) -> Self {
-        let write = move |range: Range<usize>, bytes: &mut [u8]| {
-            for (place, &index) in bytes.chunks_exact_mut(size).zip(&indices[range]) {
-                place.copy_from_slice(&all[index as usize * size..][..size]);
-            }
-        };
-        Self { count: indices.len(), size, write: Box::new(write) }
-    }
-
-    /// Elements that are packed already.
-    pub(super) fn packed<T: Pod + Sync>(all: &'a [T]) -> Self {
-        let write = |range: Range<usize>, bytes: &mut [u8]| bytes.copy_from_slice(bytemuck::cast_slice(&all[range]));
-        Self { count: all.len(), size: size_of::<T>(), write: Box::new(write) }
-    }
-
-    /// No elements.
-    pub(super) fn none() -> Self {
-        Self::packed::<u8>(&[])
-    }
-
-    /// The elements of several parts, one part after another.
-    fn joined(parts: Vec<Contents<'a>>) -> Self {
-        let count = parts.iter().map(|part| part.count).sum();
-        let size = parts.first().map_or(1, |part| part.size);
-        let write = move |range: Range<usize>, mut bytes: &mut [u8]| {
-            let mut start = 0;
-            for part in &parts {
-                let here = |index: usize| index.clamp(start, start + part.count) - start;
-                let range = here(range.start)..here(range.end);
-                let (own, rest) = bytes.split_at_mut(range.len() * size);
-                (part.write)(range, own);
-                bytes = rest;
-                start += part.count;
-            }
-        };
-        Self { count, size, write: Box::new(write) }
-    }
-
-    /// Bytes of all elements.
-    pub(super) fn len(&self) -> usize {
-        self.count * self.size
-    }
-
-    /// Bytes of an element.
-    pub(super) fn element_size(&self) -> usize {
-        self.size
-    }
-
-    /// Packs the elements whose bytes are those from `start` on; `bytes` has whole elements.
-    pub(super) fn write(&self, start: usize, bytes: &mut [u8]) {
-        let first = start / self.size;
-        (self.write)(first..first + bytes.len() / self.size, bytes);
-    }
-
-    /// All elements.
-    pub(super) fn bytes(&self) -> Vec<u8> {
-        let mut bytes = vec![0; self.len()];
-        let piece = self.size << 14;
-        let pieces = bytes.par_chunks_mut(piece.max(1)).enumerate();
-        pieces.for_each(|(index, bytes)| self.write(index * piece, bytes));
-        bytes
-    }
-}
-
 /// The contents of the tables but the lists.
-pub(super) struct Packed<'a> {
-    pub(super) params: Contents<'a>,
+pub(crate) struct Packed<'a> {
+    pub(crate) params: Contents<'a>,
     /// The first halves of the shapes and the second, one of each per sphere.
-    pub(super) shapes: [Contents<'a>; 2],
+    pub(crate) shapes: [Contents<'a>; 2],
     /// One per sphere, without what only object space needs where there is none.
-    pub(super) materials: Contents<'a>,
+    pub(crate) materials: Contents<'a>,
     /// One per sphere; empty where nothing refracts.
-    pub(super) glasses: Contents<'a>,
+    pub(crate) glasses: Contents<'a>,
     /// One per light.
-    pub(super) lights: Contents<'a>,
+    pub(crate) lights: Contents<'a>,
     /// What each sample column and then each sample row gives to its rays, on to the end of the last tile, and then what
     /// rounding took from each.
-    pub(super) window: Contents<'a>,
+    pub(crate) window: Contents<'a>,
     /// Six faces a light with lists.
-    pub(super) faces: Contents<'a>,
+    pub(crate) faces: Contents<'a>,
     /// What rounding took from shapes, again in halves, and lights, for the tiers that carry it.
-    pub(super) low: Option<([Contents<'a>; 2], Contents<'a>)>,
+    pub(crate) low: Option<([Contents<'a>; 2], Contents<'a>)>,
 }
 
 impl<'a> Packed<'a> {
     /// Packs `scene` for a pipeline that simulates `effects` with `kernel`; `indices` are those of its surfaces, where spheres
     /// share some.
-    pub(super) fn new(
+    pub(crate) fn new(
         scene: &'a Scene,
         settings: &Settings,
         effects: &Effects,
@@ -154,11 +55,6 @@ impl<'a> Packed<'a> {
             pack::<single::Layout>(scene, settings, effects, kernel.carries_low(), accel, indices, tangent_margin)
         }
     }
-}
-
-/// Vectors of a material, as `shaders/many.wgsl` has it: all three, or all but the way out of object space.
-pub(super) fn material_vectors(effects: EffectSet) -> usize {
-    if effects.has(Effect::Ellipsoids) { 3 } else { 2 }
 }
 
 fn pack<'a, L: Layout + 'a>(
@@ -257,7 +153,7 @@ fn entry_bases(accel: &Acceleration) -> impl Iterator<Item = usize> {
 }
 
 /// Where the list of each cell begins in the entries of all lists and where it ends; and these entries.
-pub(super) fn list_contents(accel: &Acceleration) -> [Contents<'_>; 2] {
+pub(crate) fn list_contents(accel: &Acceleration) -> [Contents<'_>; 2] {
     let cells = all_lists(accel).zip(entry_bases(accel)).map(|(lists, base)| {
         let offsets = &lists.offsets;
         let place = move |index: usize| (offsets[index] as usize + base) as u32;
@@ -295,7 +191,7 @@ fn residual<L: Layout>(v: DVec3) -> DVec3 {
 }
 
 /// What rounding takes from a shape.
-pub(super) fn low_shape<L: Layout>(shape: &ShapeValues) -> ShapeValues {
+pub(crate) fn low_shape<L: Layout>(shape: &ShapeValues) -> ShapeValues {
     ShapeValues {
         center: residual::<L>(shape.center),
         radius: L::residual(shape.radius),
@@ -305,13 +201,13 @@ pub(super) fn low_shape<L: Layout>(shape: &ShapeValues) -> ShapeValues {
 }
 
 /// What rounding takes from a light's position.
-pub(super) fn low_light<L: Layout>(light: &Light) -> Light {
+pub(crate) fn low_light<L: Layout>(light: &Light) -> Light {
     Light { position: residual::<L>(light.position), ..*light }
 }
 
 /// What the intersection reads of a sphere; without the way into object space, what is exact there, a power of two, goes into
 /// the radius.
-pub(super) fn shape_value(ellipsoid: &Ellipsoid, index: u32, object_space: bool) -> ShapeValues {
+pub(crate) fn shape_value(ellipsoid: &Ellipsoid, index: u32, object_space: bool) -> ShapeValues {
     let (inv_scale, radius) = if object_space {
         (ellipsoid.inv_scale, ellipsoid.radius)
     } else {
@@ -320,7 +216,7 @@ pub(super) fn shape_value(ellipsoid: &Ellipsoid, index: u32, object_space: bool)
     ShapeValues { center: ellipsoid.center, radius, inv_scale, index }
 }
 
-pub(super) fn bytes<T: Pod>(values: impl IntoIterator<Item = T>) -> Vec<u8> {
+pub(crate) fn bytes<T: Pod>(values: impl IntoIterator<Item = T>) -> Vec<u8> {
     let mut bytes = Vec::new();
     for value in values {
         bytes.extend_from_slice(bytemuck::bytes_of(&value));

@@ -6,8 +6,8 @@
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
-use super::device::Gpu;
 use crate::cache;
+use crate::gpu::device::open::Device;
 
 /// Set to 0, this variable keeps every device from using such a file; set to 1, it lets software devices use one.
 pub const SWITCH: &str = "TRUERAY_KERNEL_CACHE";
@@ -25,7 +25,7 @@ pub(super) struct KernelCache {
 
 impl KernelCache {
     /// Whether a device of this type uses one.
-    pub(super) fn is_wanted(kind: &str) -> bool {
+    fn is_wanted(kind: &str) -> bool {
         match std::env::var(SWITCH) {
             Ok(value) if value == "0" => false,
             Ok(value) if value == "1" => true,
@@ -33,12 +33,13 @@ impl KernelCache {
         }
     }
 
-    /// Reads the file of an adapter, if there is one; `None` where the device cannot use it or there is no place for it.
-    pub(super) fn open(device: &wgpu::Device, info: &wgpu::AdapterInfo) -> Option<Self> {
-        if !device.features().contains(wgpu::Features::PIPELINE_CACHE) {
+    /// Reads the file of a device, if there is one; `None` where it cannot use it or there is no place for it.
+    pub(super) fn open(device: &Device) -> Option<Self> {
+        if !Self::is_wanted(device.info.kind) || !device.raw.features().contains(wgpu::Features::PIPELINE_CACHE) {
             return None;
         }
-        let key = wgpu::util::pipeline_cache_key(info)?;
+        let info = device.raw.adapter_info();
+        let key = wgpu::util::pipeline_cache_key(&info)?;
         let driver = cache::key(&[&key, &info.name, &info.driver, &info.driver_info]);
         let path = cache::folder()?.join(format!("kernels-{driver}"));
         let (data, note) = match read(&path) {
@@ -50,7 +51,7 @@ impl KernelCache {
             unsafe_code,
             reason = "the data has the checksum that this program gave it when it came from the same driver"
         )]
-        let cache = unsafe { device.create_pipeline_cache(&descriptor) };
+        let cache = unsafe { device.raw.create_pipeline_cache(&descriptor) };
         Some(Self { cache, path, saved: Mutex::new(data.as_deref().map(checksum)), note })
     }
 
@@ -65,21 +66,12 @@ impl KernelCache {
     }
 
     /// Writes the file anew where kernels have been added. One that cannot be written is no loss but time.
-    fn save(&self) {
+    pub(super) fn save(&self) {
         let Some(data) = self.cache.get_data() else { return };
         let sum = checksum(&data);
         let mut saved = self.saved.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         if *saved != Some(sum) && write(&self.path, sum, &data).is_ok() {
             *saved = Some(sum);
-        }
-    }
-}
-
-impl Gpu {
-    /// Keeps what has been compiled so far for later runs.
-    pub(super) fn keep_compiled(&self) {
-        if let Some(cache) = &self.kernel_cache {
-            cache.save();
         }
     }
 }

@@ -39,10 +39,10 @@ pub fn oldest() -> Option<u64> {
 }
 
 /// A call that is open until this is dropped.
-pub(super) struct Call(u64);
+pub(crate) struct Call(u64);
 
 impl Call {
-    pub(super) fn begin() -> Self {
+    pub(crate) fn begin() -> Self {
         let number = NEXT.fetch_add(1, Ordering::Relaxed);
         open().insert(number);
         Self(number)

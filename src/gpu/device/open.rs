@@ -1,0 +1,166 @@
+//! An open device: its queue, what it reports, and how long it may take.
+
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::time::Duration;
+
+use super::calls::{self, Call};
+use super::choose::{Choice, chosen};
+use super::error::Error;
+use super::guard::guarded;
+use super::info::DeviceInfo;
+
+/// An open device.
+#[derive(Debug)]
+pub struct Device {
+    /// What it is.
+    pub info: DeviceInfo,
+    pub(crate) raw: wgpu::Device,
+    pub(crate) queue: wgpu::Queue,
+    /// Whether host and device share memory, so that a storage buffer can be mapped.
+    pub(crate) mappable: bool,
+    failure: Arc<Mutex<Option<Failure>>>,
+    /// Why nothing can be asked of it any more.
+    end: OnceLock<String>,
+}
+
+/// What a device has reported.
+#[derive(Debug)]
+enum Failure {
+    /// What is asked for exceeds one of its limits.
+    Limit(String),
+    /// Anything else.
+    Broken(String),
+}
+
+impl Failure {
+    fn new(error: &wgpu::Error) -> Self {
+        let text = error.to_string();
+        match error {
+            // The last line names the limit, those before in which call of which object.
+            wgpu::Error::Validation { .. } if text.contains(" limit") => {
+                Self::Limit(text.lines().last().unwrap_or_default().trim().to_owned())
+            }
+            _ => Self::Broken(text),
+        }
+    }
+}
+
+/// Bytes of a uniform that every device must be able to bind: `Tiles` of `shaders/slots_tiles.wgsl`.
+const LEAST_UNIFORM: u64 = 1 << 16;
+
+impl Device {
+    /// Opens the chosen device; [`Choice::Auto`] and [`Choice::Cpu`] mean the best one here.
+    ///
+    /// `WGPU_ADAPTER_NAME` and `WGPU_POWER_PREF` decide where the choice leaves it open.
+    pub fn open(choice: &Choice) -> Result<Self, Error> {
+        let (info, adapter) = chosen(choice)?;
+        let name = info.to_string();
+        guarded(|| Self::open_adapter(info, &adapter))
+            .unwrap_or_else(|why| Err(Error::NoDevice(format!("{name} cannot be opened: {why}"))))
+    }
+
+    fn open_adapter(info: DeviceInfo, adapter: &wgpu::Adapter) -> Result<Self, Error> {
+        let shares_memory = matches!(info.kind, "software" | "integrated");
+        let mut features = wgpu::Features::SHADER_F64
+            | wgpu::Features::SHADER_INT64
+            | wgpu::Features::TIMESTAMP_QUERY
+            | wgpu::Features::PASSTHROUGH_SHADERS
+            | wgpu::Features::PIPELINE_CACHE;
+        if shares_memory {
+            features |= wgpu::Features::MAPPABLE_PRIMARY_BUFFERS;
+        }
+        let features = features & adapter.features();
+        if !features.contains(wgpu::Features::PASSTHROUGH_SHADERS) {
+            return Err(Error::NoDevice(format!("{info} takes no SPIR-V, which alone says how to round")));
+        }
+        let uniform = adapter.limits().max_uniform_buffer_binding_size;
+        if uniform < LEAST_UNIFORM {
+            let limit = "max_uniform_buffer_binding_size (Vulkan's maxUniformBufferRange)";
+            let why = format!("{limit} is {uniform} bytes, and the kernels need {LEAST_UNIFORM}");
+            return Err(Error::NoDevice(format!("{info} cannot render: {why}")));
+        }
+        let request = adapter.request_device(&wgpu::DeviceDescriptor {
+            label: None,
+            required_features: features,
+            required_limits: adapter.limits(),
+            memory_hints: wgpu::MemoryHints::MemoryUsage,
+            ..wgpu::DeviceDescriptor::default()
+        });
+        let (device, queue) =
+            pollster::block_on(request).map_err(|e| Error::NoDevice(format!("{info} cannot be opened: {e}")))?;
+
+        let failure = Arc::new(Mutex::new(None));
+        let slot = Arc::clone(&failure);
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| note(&slot, Failure::new(&error))));
+        let slot = Arc::clone(&failure);
+        device.set_device_lost_callback(move |_, message| note(&slot, Failure::Broken(message)));
+        let mappable = features.contains(wgpu::Features::MAPPABLE_PRIMARY_BUFFERS);
+        Ok(Self { info, raw: device, queue, mappable, failure, end: OnceLock::new() })
+    }
+
+    /// Gives the device up: whatever is still asked of it fails as lost.
+    pub fn destroy(&self) {
+        self.raw.destroy();
+    }
+
+    /// Runs `action` and turns what the device reported meanwhile into an error.
+    pub(crate) fn checked<T>(&self, what: &str, action: impl FnOnce() -> T) -> Result<T, Error> {
+        let value = action();
+        match self.failure.lock().unwrap_or_else(PoisonError::into_inner).take() {
+            None => Ok(value),
+            Some(Failure::Limit(why)) => Err(Error::NoDevice(format!("{} is too small for {what}: {why}", self.info))),
+            Some(Failure::Broken(why)) => Err(Error::Lost(format!("{what} on {}: {why}", self.info))),
+        }
+    }
+
+    /// Runs `action` unless the device has come to its end; where a library on the way to the driver panics, it has.
+    pub(crate) fn guarded<T>(&self, action: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
+        match self.end.get() {
+            Some(why) => Err(Error::Lost(why.clone())),
+            None => guarded(action).unwrap_or_else(|said| Err(self.ends(format!("{}: {said}", self.info)))),
+        }
+    }
+
+    fn ends(&self, why: String) -> Error {
+        // Closing it would wait for what it still does, or panic once more.
+        std::mem::forget((self.raw.clone(), self.queue.clone()));
+        Error::Lost(self.end.get_or_init(|| why).clone())
+    }
+
+    /// Waits until everything submitted is done.
+    pub(crate) fn wait(&self) -> Result<(), Error> {
+        self.wait_until(None)
+    }
+
+    /// Waits until this submission is done, or all of them.
+    pub(crate) fn wait_until(&self, submission: Option<&wgpu::SubmissionIndex>) -> Result<(), Error> {
+        let patience = calls::patience().as_secs();
+        // Of a process that is stopped no more than one second counts.
+        for _ in 0..patience {
+            let wait =
+                wgpu::PollType::Wait { submission_index: submission.cloned(), timeout: Some(Duration::from_secs(1)) };
+            let call = Call::begin();
+            let result = self.checked("waiting for a dispatch", || self.raw.poll(wait))?;
+            drop(call);
+            match result {
+                Ok(_) => return Ok(()),
+                Err(wgpu::PollError::Timeout) => {}
+                Err(error) => return Err(Error::Lost(format!("{} stopped answering: {error}", self.info))),
+            }
+        }
+        let limit = calls::PATIENCE;
+        let planned = "where a dispatch is to take a fraction of one";
+        let why = format!("{} has not answered for {patience} s, {planned}; {limit} sets the limit", self.info);
+        Err(self.ends(why))
+    }
+
+    /// Hands commands to the driver, which may wait for earlier ones.
+    pub(crate) fn submit(&self, commands: Option<wgpu::CommandBuffer>) -> wgpu::SubmissionIndex {
+        let _call = Call::begin();
+        self.queue.submit(commands)
+    }
+}
+
+fn note(slot: &Mutex<Option<Failure>>, failure: Failure) {
+    slot.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(failure);
+}

@@ -1,0 +1,110 @@
+//! What renders: a device, what is tuned to it, and its kernels.
+
+use std::sync::Arc;
+
+use super::device::choose::Choice;
+use super::device::error::Error;
+use super::device::open::Device;
+use super::kernel::ahead::{Ahead, SOFTWARE_LADDER};
+use super::kernel::compiler::Compiler;
+use super::kernel::pipeline::Stages;
+use super::kernel::shader::Textures;
+use super::kernel::specialisation::Specialisation;
+use super::kernel::stage::MAX_TEXTURES;
+use super::kernel::store::KernelStore;
+use super::tuned::DeviceTuning;
+use crate::misuse::Misuse;
+use crate::precision::Tier;
+use crate::tuning::Tuning;
+
+/// An open device that renders.
+#[derive(Debug)]
+pub struct Gpu {
+    /// The device.
+    pub device: Device,
+    tuned: DeviceTuning,
+    kernels: KernelStore,
+}
+
+impl Gpu {
+    /// Opens the chosen device; [`Choice::Auto`] and [`Choice::Cpu`] mean the best one here.
+    ///
+    /// `WGPU_ADAPTER_NAME` and `WGPU_POWER_PREF` decide where the choice leaves it open.
+    pub fn open(choice: &Choice) -> Result<Self, Error> {
+        let device = Device::open(choice)?;
+        let tuned = DeviceTuning::of(&device.info);
+        let kernels = device.guarded(|| Ok(KernelStore::open(&device)))?;
+        Ok(Self { device, tuned, kernels })
+    }
+
+    /// Why compiled kernels of earlier runs are not used, where they could be.
+    pub fn kernel_cache_note(&self) -> Option<&str> {
+        self.kernels.note()
+    }
+
+    /// How kernels read the textures that hold a scene.
+    pub(crate) fn textures(&self) -> Textures {
+        if self.tuned.tuning.stored_tables && self.device.info.max_storage_textures >= MAX_TEXTURES {
+            Textures::Stored
+        } else {
+            Textures::Sampled
+        }
+    }
+
+    /// What is tuned to it.
+    pub fn tuned(&self) -> &DeviceTuning {
+        &self.tuned
+    }
+
+    /// Renders with `tuning` from now on.
+    ///
+    /// # Errors
+    ///
+    /// [`Misuse::Tuning`] where [`DeviceInfo::problem_with`] has an objection; then nothing changes.
+    pub fn set_tuning(&mut self, tuning: Tuning) -> Result<(), Misuse> {
+        match self.device.info.problem_with(&tuning) {
+            None => self.tuned.tuning = tuning,
+            Some(problem) => return Err(Misuse::Tuning(problem)),
+        }
+        Ok(())
+    }
+
+    /// Uses what was done before the device was open.
+    #[must_use]
+    pub fn having(self, ahead: Option<Ahead>) -> Self {
+        Self { kernels: self.kernels.having(ahead), ..self }
+    }
+
+    /// From now on renderers share the kernels that they compile: for whoever renders many pictures and measures no
+    /// compilation.
+    #[must_use]
+    pub fn keeping_kernels(self) -> Self {
+        Self { kernels: self.kernels.keeping(), ..self }
+    }
+
+    /// From now on no dispatch is long: for whoever may change their mind.
+    #[must_use]
+    pub fn interactive(self) -> Self {
+        let mut tuned = self.tuned;
+        tuned.tuning = tuned.tuning.interactive();
+        Self { tuned, ..self }
+    }
+
+    /// The kernels of a picture, and whether another picture has used them before.
+    pub(crate) fn stages(&self, specialisation: &Specialisation) -> Result<(Arc<Stages>, bool), Error> {
+        self.kernels.stages(&self.device, specialisation)
+    }
+
+    /// What compiles other kernels.
+    pub(crate) fn compiler(&self) -> Compiler<'_> {
+        self.kernels.compiler(&self.device)
+    }
+
+    /// The tiers that `auto` chooses from, cheapest first.
+    pub fn ladder(&self) -> &'static [Tier] {
+        match (self.device.info.kind, self.device.info.f64) {
+            ("software", true) => &SOFTWARE_LADDER,
+            _ => &Tier::ALL,
+        }
+    }
+}

@@ -1,0 +1,47 @@
+//! What compiles kernels for a device.
+
+use std::borrow::Cow;
+
+use super::cache::KernelCache;
+use super::spirv::Parsed;
+use crate::gpu::device::error::Error;
+use crate::gpu::device::open::Device;
+
+/// A device, with the kernels of earlier runs where it has them.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Compiler<'a> {
+    pub(crate) device: &'a Device,
+    pub(super) cache: Option<&'a KernelCache>,
+}
+
+impl Compiler<'_> {
+    /// The module of one kernel.
+    pub(super) fn module(
+        self,
+        module: &Parsed,
+        entry_point: &str,
+        constants: &[(&str, f64)],
+        bindings: &[u32],
+    ) -> Result<wgpu::ShaderModule, Error> {
+        let words = module.spirv(entry_point, constants, bindings).map_err(Error::Lost)?;
+        self.device.checked("reading the shader", || {
+            #[allow(
+                unsafe_code,
+                reason = "naga has validated the module; in its SPIR-V, which has some decorations more, functions stand in the \
+                          place of their calls and products and sums in that of dot and cross products: tests hold that it is \
+                          well formed. It checks no index, for the reasons that Parsed::spirv gives"
+            )]
+            unsafe {
+                self.device.raw.create_shader_module_passthrough(wgpu::ShaderModuleDescriptorPassthrough {
+                    entry_points: Cow::Owned(vec![wgpu::PassthroughShaderEntryPoint {
+                        name: entry_point.into(),
+                        // Read for Metal alone.
+                        workgroup_size: (1, 1, 1),
+                    }]),
+                    spirv: Some(words.into()),
+                    ..Default::default()
+                })
+            }
+        })
+    }
+}

@@ -1,0 +1,13 @@
+//! From variants and constants to compiled kernels: what a device is told to do, but not with what.
+
+pub(crate) mod ahead;
+pub mod cache;
+pub(crate) mod compiler;
+mod inline;
+pub(crate) mod pipeline;
+mod products;
+pub(crate) mod shader;
+pub(crate) mod specialisation;
+pub(crate) mod spirv;
+pub(crate) mod stage;
+pub(crate) mod store;

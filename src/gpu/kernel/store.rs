@@ -1,0 +1,82 @@
+//! The compiled kernels of a device: of earlier runs, of other pictures, and those that are begun before it is open.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::ahead::Ahead;
+use super::cache::KernelCache;
+use super::compiler::Compiler;
+use super::pipeline::{Stages, compile};
+use super::specialisation::Specialisation;
+use crate::gpu::device::error::Error;
+use crate::gpu::device::open::Device;
+
+/// Compiled kernels, those used last at the end.
+type Kept = Vec<(Specialisation, Arc<Stages>)>;
+
+/// For so many specialisations compiled kernels are kept; one more drops the one that was not used for the longest time.
+const MAX_KEPT: usize = 16;
+
+/// Kernels of one device.
+#[derive(Debug)]
+pub(crate) struct KernelStore {
+    /// Those of earlier runs.
+    cache: Option<KernelCache>,
+    /// What was done before the device was open.
+    ahead: Option<Ahead>,
+    /// Compiled kernels that are used again; `None` where every renderer compiles its own.
+    kept: Option<Mutex<Kept>>,
+}
+
+impl KernelStore {
+    /// For a device that has compiled nothing yet.
+    pub(crate) fn open(device: &Device) -> Self {
+        Self { cache: KernelCache::open(device), ahead: None, kept: None }
+    }
+
+    /// Uses what was done before the device was open.
+    pub(crate) fn having(self, ahead: Option<Ahead>) -> Self {
+        Self { ahead, ..self }
+    }
+
+    /// From now on kernels are kept for other pictures.
+    pub(crate) fn keeping(self) -> Self {
+        Self { kept: Some(Mutex::default()), ..self }
+    }
+
+    /// Why compiled kernels of earlier runs are not used, where they could be.
+    pub(crate) fn note(&self) -> Option<&str> {
+        self.cache.as_ref()?.note()
+    }
+
+    /// What compiles for `device`, whose kernels these are.
+    pub(crate) fn compiler<'a>(&'a self, device: &'a Device) -> Compiler<'a> {
+        Compiler { device, cache: self.cache.as_ref() }
+    }
+
+    /// The kernels of a picture, and whether another picture has used them before.
+    pub(crate) fn stages(
+        &self,
+        device: &Device,
+        specialisation: &Specialisation,
+    ) -> Result<(Arc<Stages>, bool), Error> {
+        let kept = || self.kept.as_ref().map(|kept| kept.lock().unwrap_or_else(PoisonError::into_inner));
+        if let Some(mut kept) = kept()
+            && let Some(index) = kept.iter().position(|(key, _)| key == specialisation)
+        {
+            kept[index..].rotate_left(1);
+            return Ok((Arc::clone(&kept[kept.len() - 1].1), true));
+        }
+        let ahead = self.ahead.as_ref().and_then(|ahead| ahead.module(specialisation));
+        let stages = Arc::new(compile(self.compiler(device), ahead, specialisation)?);
+        if let Some(cache) = &self.cache {
+            cache.save();
+        }
+        if let Some(mut kept) = kept() {
+            if kept.len() == MAX_KEPT {
+                kept.remove(0);
+            }
+            kept.push((*specialisation, Arc::clone(&stages)));
+        }
+        Ok((stages, false))
+    }
+}

@@ -1,0 +1,117 @@
+//! The compiled kernels of a picture with the buffers that they share.
+
+use std::sync::Arc;
+
+use super::tiles::{TILE_PIXELS, TILES_SIZE};
+use crate::gpu::device::readable::Readable;
+use crate::gpu::device::upload::{empty_texels, small_buffer};
+use crate::gpu::facade::Gpu;
+use crate::gpu::kernel::pipeline::Stages;
+use crate::gpu::kernel::shader::{Slots, Walk};
+use crate::gpu::kernel::specialisation::Specialisation;
+use crate::gpu::kernel::stage::{Resource, Stage, table_usage};
+
+/// The counts of workgroups in `shaders/stage.wgsl`: their bytes, and where those of the kernel with one path an invocation and
+/// of the one with several begin.
+pub(super) const WORKGROUPS_SIZE: u64 = 24;
+pub(super) const ONE_PATH: u64 = 0;
+pub(super) const SEVERAL_PATHS: u64 = 12;
+
+/// Bytes of the shader's `Stage`.
+pub(super) const STAGE_SIZE: u64 = 8;
+
+/// Bytes of a slot's ray counts in `shaders/film.wgsl`.
+pub(super) const RAY_COUNT_SIZE: u64 = 8;
+
+/// The compiled kernels with their buffers.
+#[derive(Debug)]
+pub(super) struct Work {
+    pub(super) stages: Arc<Stages>,
+    pub(super) see_group: wgpu::BindGroup,
+    /// For what goes before a bounce.
+    pub(super) begin_group: Option<wgpu::BindGroup>,
+    /// For a bounce, by whether another one follows, and from which of the two textures of paths to the other.
+    pub(super) walk_groups: Option<[[wgpu::BindGroup; 2]; 2]>,
+    /// Likewise for its shading.
+    pub(super) shade_groups: Option<[[wgpu::BindGroup; 2]; 2]>,
+    pub(super) resolve_group: Option<wgpu::BindGroup>,
+    pub(super) tiles: wgpu::Buffer,
+    pub(super) stage: wgpu::Buffer,
+    /// Workgroups of the next bounce: of the kernel with a path an invocation, and of the one with several.
+    pub(super) workgroups: wgpu::Buffer,
+    pub(super) pixels: Readable,
+    pub(super) ray_counts: Readable,
+    /// Tiles that the buffers hold.
+    pub(super) capacity: u32,
+}
+
+impl Work {
+    pub(super) fn new(
+        gpu: &Gpu,
+        stages: Arc<Stages>,
+        resources: &[(u32, Resource)],
+        capacity: u32,
+        specialisation: &Specialisation,
+        has_bounces: bool,
+    ) -> Self {
+        let (device, usage) = (&gpu.device, table_usage(gpu.textures()));
+        let empty = |size, usage| {
+            device.raw.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
+        };
+        let (storage, copied) = (wgpu::BufferUsages::STORAGE, wgpu::BufferUsages::COPY_DST);
+        let pixel_count = u64::from(capacity) * TILE_PIXELS as u64;
+        let slots = pixel_count * u64::from(specialisation.samples * specialisation.samples);
+        let pixels = Readable::new(device, pixel_count);
+        let ray_counts = Readable::new(device, if specialisation.count_rays { slots * RAY_COUNT_SIZE / 4 } else { 2 });
+        let paths = specialisation.path_size() * if specialisation.keeps_paths() { slots } else { 1 };
+        let paths = [0, 1].map(|_| empty_texels(device, paths, 4, usage));
+        let in_turn = matches!(specialisation.walk, Walk::InTurn(_));
+        let hits = empty_texels(device, if in_turn { 4 * slots } else { 4 }, 1, usage);
+        let tiles = match specialisation.slots {
+            Slots::Tiles => empty(TILES_SIZE, wgpu::BufferUsages::UNIFORM | copied),
+            Slots::List => empty((1 + pixel_count) * 8, storage | copied),
+        };
+        let stage = empty(STAGE_SIZE, storage | copied);
+        let workgroups = empty(WORKGROUPS_SIZE, storage | wgpu::BufferUsages::INDIRECT);
+        let colors = stages.resolve.as_ref().map(|_| empty(slots * specialisation.color_size(), storage));
+        let results = colors.as_ref().unwrap_or(&pixels.buffer);
+        let mut all = resources.to_vec();
+        let mut bind = |binding, buffer: &wgpu::Buffer| all.push((binding, Resource::Buffer(buffer.clone())));
+        bind(6, &tiles);
+        bind(7, results);
+        bind(8, &ray_counts.buffer);
+        bind(12, &stage);
+        bind(15, &pixels.buffer);
+        bind(16, &workgroups);
+        let has_next =
+            [0_u32, 1].map(|has_next| small_buffer(device, bytemuck::bytes_of(&has_next), wgpu::BufferUsages::UNIFORM));
+        let turn = |stage: &Stage, from: usize, goes_on: usize| {
+            let [from, to] = [from, 1 - from].map(|half| Resource::Texels(paths[half].clone()));
+            let [read, written] = [0, 1].map(|_| Resource::Texels(hits.clone()));
+            let has_next = Resource::Buffer(has_next[goes_on].clone());
+            let turn = [(11, from), (18, to), (19, has_next), (22, read), (23, written)];
+            stage.bind(device, &[&all[..], &turn].concat())
+        };
+        let see_group = turn(&stages.see, 1, usize::from(has_bounces));
+        let begin_group = stages.bounce.as_ref().map(|bounce| bounce.begin.bind(device, &all));
+        let all_turns = |stage| [0, 1].map(|goes_on| [0, 1].map(|from| turn(stage, from, goes_on)));
+        let walk_groups = stages.bounce.as_ref().map(|bounce| all_turns(&bounce.walk));
+        let shade = stages.bounce.as_ref().and_then(|bounce| bounce.shade.as_ref());
+        let shade_groups = shade.map(all_turns);
+        let resolve_group = stages.resolve.as_ref().map(|resolve| resolve.bind(device, &all));
+        Self {
+            stages,
+            see_group,
+            begin_group,
+            walk_groups,
+            shade_groups,
+            resolve_group,
+            tiles,
+            stage,
+            workgroups,
+            pixels,
+            ray_counts,
+            capacity,
+        }
+    }
+}
