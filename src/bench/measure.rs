@@ -320,8 +320,8 @@ fn measure_scene(
         let warm_up = counted.and_then(|()| contestant.run(&scene, subject, &effects, false));
         let ms = match warm_up {
             Ok(ms) => ms,
-            Err(gpu::Error::NoDevice(reason)) => {
-                skip(reason);
+            Err(refusal) if refusal.is_refusal() => {
+                skip(refusal.to_string());
                 continue;
             }
             Err(error) => return Err(error),

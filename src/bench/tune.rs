@@ -12,7 +12,7 @@ use crate::precision::Tier;
 use crate::report::Sample;
 use crate::scene::Scene;
 use crate::settings::Settings;
-use crate::tuning::{Class, KNOBS, Knob, Tuning};
+use crate::tuning::{KNOBS, Knob, Tuning};
 
 /// A candidate has to be this much faster than what it replaces.
 const WORTHWHILE: f64 = 0.97;
@@ -95,7 +95,7 @@ struct Subject {
 
 /// Measures one number after the other, each with the best values found before; `on_knob` hears of each.
 pub fn tune(gpu: &mut Gpu, plan: &TunePlan, mut on_knob: impl FnMut(&KnobResult)) -> Result<TuneResult, Error> {
-    let before = Tuning::of(Class::of(gpu.device.info.kind));
+    let before = Tuning::of(gpu.device.info.kind.class());
     let mut best = before;
     let mut knobs = Vec::new();
     for knob in &KNOBS {
@@ -183,9 +183,9 @@ impl Subject {
             None => self.picture = Some(rgb),
             Some(picture) if *picture == rgb => {}
             Some(_) => {
-                let change = tuning.difference(&Tuning::of(Class::of(gpu.device.info.kind)));
-                let message = format!("{} renders another picture with {change}: nothing is kept", gpu.device.info);
-                return Err(Error::NoDevice(message));
+                let device = &gpu.device.info;
+                let tuning = tuning.difference(&Tuning::of(device.kind.class()));
+                return Err(Error::OtherPicture { device: device.to_string(), tuning });
             }
         }
         Ok(times.prepare_ms + times.render_ms + times.read_back_ms)

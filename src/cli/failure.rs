@@ -19,9 +19,9 @@ pub(super) const BROKEN: u8 = 1;
 pub(super) const USAGE: u8 = 2;
 /// The scene cannot be read or has errors.
 pub(super) const SCENE: u8 = 3;
-/// There is no device, or not the one asked for, or it cannot hold the scene.
+/// There is no device, or not the one asked for, or it cannot do what is asked.
 pub(super) const NO_DEVICE: u8 = 4;
-/// The device failed while it worked.
+/// The device failed while it worked, or rendered a wrong picture.
 pub(super) const DEVICE_LOST: u8 = 5;
 /// A file cannot be written.
 pub(super) const OUTPUT: u8 = 6;
@@ -65,14 +65,21 @@ impl fmt::Display for Failure {
 
 impl From<gpu::Error> for Failure {
     fn from(error: gpu::Error) -> Self {
-        let code = match error {
-            gpu::Error::NoDevice(why) if threads::are_short() => {
+        use gpu::Error;
+        let code = match &error {
+            Error::NoneFound(_) | Error::NotFound(_) | Error::Unsuitable { .. } if threads::are_short() => {
                 let help = "help: the system refuses threads, of which a driver needs some: `ulimit -u` says how many there may be";
-                return Self::new(NO_THREAD, format!("{why}\n  {help}"));
+                return Self::new(NO_THREAD, format!("{error}\n  {help}"));
             }
-            gpu::Error::NoDevice(_) => NO_DEVICE,
-            gpu::Error::Lost(_) | gpu::Error::Wrong(_) => DEVICE_LOST,
-            gpu::Error::Misuse(_) => USAGE,
+            Error::NoneFound(_)
+            | Error::NotFound(_)
+            | Error::Unsuitable { .. }
+            | Error::TooLarge { .. }
+            | Error::OutOfRange { .. }
+            | Error::ArithmeticRefused { .. }
+            | Error::Cut { .. } => NO_DEVICE,
+            Error::Lost(_) | Error::Shader(_) | Error::Wrong(_) | Error::OtherPicture { .. } => DEVICE_LOST,
+            Error::Misuse(_) => USAGE,
         };
         Self::new(code, error.to_string())
     }

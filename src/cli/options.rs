@@ -169,7 +169,7 @@ impl DeviceOptions {
         let gpu = match &self.device {
             Choice::Cpu => return Ok(None),
             Choice::Auto => match Gpu::open(&Choice::Auto) {
-                Err(Error::NoDevice(why)) if crate::gpu::list().is_ok_and(|list| list.is_empty()) => {
+                Err(Error::NoneFound(why)) => {
                     errln!("trueray: rendering on the CPU reference: {why}");
                     return Ok(None);
                 }

@@ -16,7 +16,7 @@ use super::stats::{Sampled, Stats, Verified, peak_memory_mib};
 use crate::effects::Effects;
 use crate::engine::{Backend, Engine, Options, Pixels, render_bands, render_partial};
 use crate::film::{Format, PictureWriter, Target};
-use crate::gpu::{Ahead, Gpu};
+use crate::gpu::{Ahead, DeviceKind, Gpu};
 use crate::precision::Selection;
 use crate::sampling::Samples;
 use crate::scene::Scene;
@@ -149,7 +149,7 @@ fn render_all(args: &Args) -> Result<u8, Failure> {
     }
     // The files are complete, and the process ends: closing a device takes some milliseconds and gains nothing. But drivers
     // may still be writing compiled kernels to their cache; where any can have been compiled, they are waited for.
-    let is_software = gpu.as_ref().is_some_and(|gpu| gpu.device.info.kind == "software");
+    let is_software = gpu.as_ref().is_some_and(|gpu| gpu.device.info.kind == DeviceKind::Software);
     if is_software && all_stats.iter().all(|stats| stats.times.compile_ms < MAYBE_COMPILED_MS) {
         std::mem::forget(gpu);
     }

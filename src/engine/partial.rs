@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use super::{Backend, Engine, ms};
 use crate::cpu;
-use crate::gpu::{self, Pixels, Reconstructor};
+use crate::gpu::{self, DeviceKind, Pixels, Reconstructor};
 use crate::misuse::Misuse;
 use crate::sampling::{Fill, Samples};
 
@@ -57,7 +57,7 @@ impl<'a> Filler<'a> {
     /// are the same.
     pub fn fastest(backend: Backend<'a>) -> Result<Self, gpu::Error> {
         match backend {
-            Backend::Device(gpu, _) if gpu.device.info.kind == "software" => Ok(Self::Cpu),
+            Backend::Device(gpu, _) if gpu.device.info.kind == DeviceKind::Software => Ok(Self::Cpu),
             backend => Self::new(backend),
         }
     }

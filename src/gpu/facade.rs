@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::device::choose::Choice;
 use super::device::error::Error;
+use super::device::info::DeviceKind;
 use super::device::open::Device;
 use super::kernel::ahead::{Ahead, SOFTWARE_LADDER};
 use super::kernel::compiler::Compiler;
@@ -103,7 +104,7 @@ impl Gpu {
     /// The tiers that `auto` chooses from, cheapest first.
     pub fn ladder(&self) -> &'static [Tier] {
         match (self.device.info.kind, self.device.info.f64) {
-            ("software", true) => &SOFTWARE_LADDER,
+            (DeviceKind::Software, true) => &SOFTWARE_LADDER,
             _ => &Tier::ALL,
         }
     }

@@ -14,7 +14,7 @@ mod tuned;
 pub use device::choose::{Choice, list};
 pub use device::diagnosis::{Hidden, hidden};
 pub use device::error::Error;
-pub use device::info::DeviceInfo;
+pub use device::info::{DeviceInfo, DeviceKind};
 pub use device::open::Device;
 pub use device::{calls, drivers};
 pub use facade::Gpu;

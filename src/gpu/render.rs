@@ -203,8 +203,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         let eye = eye * (scene.window.near / near);
         let scalar = if kernel.is_double() { Scalar::Double } else { Scalar::Single };
         if let Some(why) = limits::problem_in(scalar, scene, effects) {
-            let help = "help: --precision double can, where the device has f64, and --device cpu";
-            return Err(Error::NoDevice(format!("{} cannot render this scene: {why}\n  {help}", kernel.name())));
+            return Err(Error::OutOfRange { kernel: kernel.name(), why });
         }
         let (tuning, textures) = (&gpu.tuned().tuning, gpu.textures());
         let specialisation = Specialisation {
@@ -266,7 +265,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
             covered_tiles,
             background: settings.quantize.levels(scene.background),
             max_depth: effects.depth,
-            hands: match Class::of(gpu.device.info.kind) {
+            hands: match gpu.device.info.kind.class() {
                 Class::Software => std::thread::available_parallelism().map_or(1, NonZero::get),
                 Class::Integrated | Class::Discrete => 1,
             },
@@ -309,10 +308,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
 
     /// Why a picture is refused of which so many pixels are cut.
     pub fn too_few_turns(&self, pixels: usize) -> Error {
-        Error::NoDevice(format!(
-            "{pixels} pixels need more turns of a loop than {} has for them; `--device cpu` has no such limit",
-            self.gpu.device.info
-        ))
+        Error::Cut { device: self.gpu.device.info.to_string(), pixels }
     }
 
     /// Primary, shadow and reflection rays of all pixels so far; `None` where they are not counted. Those that need no ray, since no

@@ -20,7 +20,7 @@ pub struct DeviceTuning {
 impl DeviceTuning {
     /// The tuning for `info`.
     pub fn of(info: &DeviceInfo) -> Self {
-        let class = Class::of(info.kind);
+        let class = info.kind.class();
         let of_class =
             |warning| Self { tuning: Tuning::of(class), source: Source::Class, warning, closed: None, class };
         match load(&info.name, &info.driver) {

@@ -29,7 +29,7 @@ pub fn cost(gpu: &Gpu, kernels: &[Kernel], count: usize, seed: u64, runs: usize)
                 prober.ask(Question::Nearest, &batch)?;
                 probers.push((kernel.name(), prober, Sample::default()));
             }
-            Err(Error::NoDevice(_)) => {}
+            Err(Error::ArithmeticRefused { .. }) => {}
             Err(error) => return Err(error),
         }
     }

@@ -87,7 +87,7 @@ pub fn run(
     for &kernel in kernels {
         let prober = match Prober::new(gpu, kernel) {
             Ok(prober) => Ok(prober),
-            Err(Error::NoDevice(why)) => Err(why),
+            Err(refusal @ Error::ArithmeticRefused { .. }) => Err(refusal.to_string()),
             Err(error) => return Err(error),
         };
         probers.push((kernel, prober));

@@ -7,6 +7,7 @@ use crate::effects::Effects;
 use crate::engine::{Backend, Engine, render_picture};
 use crate::film::Picture;
 use crate::gpu::{Error, Gpu};
+use crate::misuse::Misuse;
 use crate::precision::Tier;
 use crate::scene::{Scene, parse};
 use crate::settings::Settings;
@@ -18,7 +19,7 @@ fn scene(statements: &str) -> Result<Scene, Error> {
     let head = format!("NEAR 1\nLEFT -0.5\nRIGHT 0.5\nBOTTOM -0.5\nTOP 0.5\nRES {SIZE} {SIZE}\n");
     let parsed = parse("stress", format!("{head}{statements}").as_bytes());
     let report = parsed.report(false);
-    parsed.scene.ok_or_else(|| Error::Lost(format!("a scene of this program has errors: {report}")))
+    parsed.scene.ok_or_else(|| Misuse::Picture(format!("a scene of this program has errors: {report}")).into())
 }
 
 /// The device's picture and its number of pixels that are not finite.

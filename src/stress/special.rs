@@ -194,8 +194,8 @@ pub(super) fn facing_mirrors(prober: &mut Prober, random: &mut Random, count: us
     let mut metrics = Metrics { count: count as u64, ..Metrics::default() };
     let mut double = match Prober::new(prober.gpu(), Kernel::Tier(Tier::Double)) {
         Ok(double) => double,
-        Err(Error::NoDevice(why)) => {
-            metrics.note = why;
+        Err(refusal @ Error::ArithmeticRefused { .. }) => {
+            metrics.note = refusal.to_string();
             return Ok(metrics);
         }
         Err(error) => return Err(error),

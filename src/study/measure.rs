@@ -12,7 +12,7 @@ use crate::cpu::Reference;
 use crate::effects::{Effect, EffectSet, Effects};
 use crate::engine::Backend;
 use crate::film::Picture;
-use crate::gpu::{self, DeviceInfo, Gpu};
+use crate::gpu::{DeviceInfo, Gpu};
 use crate::precision::Selection;
 use crate::report::Sample;
 use crate::scene::Scene;
@@ -274,9 +274,9 @@ fn series(
                     measured.push((runner, point));
                     round_ms += ms;
                 }
-                Err(Error::Device(gpu::Error::NoDevice(reason))) => {
+                Err(Error::Device(refusal)) if refusal.is_refusal() => {
                     contestants.retain(|other| *other != contestant);
-                    skipped.push(Skipped { name: contestant.name().into(), reason });
+                    skipped.push(Skipped { name: contestant.name().into(), reason: refusal.to_string() });
                 }
                 Err(error) => return Err(error),
             }

@@ -54,16 +54,6 @@ pub enum Class {
 }
 
 impl Class {
-    /// The class of a device whose type is called like this in `trueray devices`. What says nothing of itself is taken for
-    /// the slower kind of hardware.
-    pub fn of(kind: &str) -> Self {
-        match kind {
-            "software" => Self::Software,
-            "discrete" | "virtual" => Self::Discrete,
-            _ => Self::Integrated,
-        }
-    }
-
     /// Its name.
     pub fn name(self) -> &'static str {
         match self {

@@ -238,7 +238,7 @@ impl<'g> Easel<'g> {
     /// Does a little: some tens of milliseconds, unless kernels are compiled. Only a lost device is an error.
     pub(super) fn turn(&mut self, setting: &mut Setting) -> Result<(), gpu::Error> {
         match self.try_turn(setting) {
-            Err(error @ (gpu::Error::NoDevice(_) | gpu::Error::Misuse(_))) => {
+            Err(error) if error.is_refusal() || matches!(error, gpu::Error::Misuse(_)) => {
                 self.trouble = Some(error.to_string());
                 (self.pass, self.measurement) = (None, None);
                 if let Some(subject) = &mut self.subject {

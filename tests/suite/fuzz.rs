@@ -6,6 +6,7 @@ use proptest::prelude::*;
 use proptest::sample::Index;
 use proptest::test_runner::{Config, TestRunner};
 use std::fmt::Write as _;
+
 use trueray::doubts::doubts;
 use trueray::effects::Effects;
 use trueray::engine::{Backend, Engine, render_picture};

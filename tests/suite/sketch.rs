@@ -1,6 +1,7 @@
 //! Moving pictures of which a part is sampled, as a page gets them, without a browser.
 
 use serde_json::Value;
+use trueray::gpu::DeviceKind;
 use trueray::sampling::{Density, Fovea, Samples};
 use trueray::viewer::{PLACES, Places, SAMPLES, SampleColors};
 
@@ -68,7 +69,7 @@ fn a_moving_picture_has_samples_of_render_and_the_rest_follows() {
             page.send(look);
             page.send(economy);
             let Some(words) = sketched(&mut page, r#"{"do":"orbit","right":0.1,"up":0.05}"#) else {
-                let is_hardware = device.as_ref().is_some_and(|gpu| gpu.device.info.kind != "software");
+                let is_hardware = device.as_ref().is_some_and(|gpu| gpu.device.info.kind != DeviceKind::Software);
                 assert!(is_hardware || has_many_cores(), "the picture was never sampled in part");
                 say_skipped("sketch::a_moving_picture", "all of it is there in a frame");
                 continue;

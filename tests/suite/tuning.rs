@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use trueray::accel::Density;
 use trueray::bench::Family;
 use trueray::effects::Effects;
-use trueray::gpu::{Gpu, GpuRenderer};
+use trueray::gpu::{DeviceKind, Gpu, GpuRenderer};
 use trueray::precision::Tier;
 use trueray::scene::Scene;
 use trueray::settings::Settings;
@@ -111,7 +111,9 @@ fn numbers_out_of_their_limits_are_refused_by_name() {
 
 #[test]
 fn classes_follow_from_the_type() {
-    let of = ["software", "integrated", "discrete", "virtual", "other"].map(Class::of);
+    let of =
+        [DeviceKind::Software, DeviceKind::Integrated, DeviceKind::Discrete, DeviceKind::Virtual, DeviceKind::Other]
+            .map(DeviceKind::class);
     assert_eq!(of, [Class::Software, Class::Integrated, Class::Discrete, Class::Discrete, Class::Integrated]);
 }
 

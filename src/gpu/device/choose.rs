@@ -43,7 +43,7 @@ pub fn list() -> Result<Vec<DeviceInfo>, Error> {
 }
 
 fn cannot_be_asked(why: &str) -> Error {
-    Error::NoDevice(format!("the Vulkan drivers cannot be asked for their devices: {why}"))
+    Error::NotFound(format!("the Vulkan drivers cannot be asked for their devices: {why}"))
 }
 
 /// The device that `choice` and the environment mean.
@@ -59,7 +59,7 @@ fn adapters() -> Result<(wgpu::Instance, Adapters), Error> {
     if let Some(backends) = wgpu::Backends::from_env()
         && !backends.contains(wgpu::Backends::VULKAN)
     {
-        return Err(Error::NoDevice("WGPU_BACKEND leaves out Vulkan, the only backend of this program".into()));
+        return Err(Error::NotFound("WGPU_BACKEND leaves out Vulkan, the only backend of this program".into()));
     }
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends: wgpu::Backends::VULKAN,
@@ -85,7 +85,7 @@ fn choose<'a>(choice: &Choice, devices: impl Iterator<Item = &'a DeviceInfo>) ->
         let found: Vec<_> = devices.iter().copied().filter(|device| device.matches(name)).collect();
         if found.is_empty() {
             let message = format!("{source} '{name}' matches no Vulkan device; there are:{}", listing());
-            return Err(Error::NoDevice(message));
+            return Err(Error::NotFound(message));
         }
         Ok(found)
     };
@@ -93,10 +93,10 @@ fn choose<'a>(choice: &Choice, devices: impl Iterator<Item = &'a DeviceInfo>) ->
         Choice::Index(index) => devices
             .get(*index)
             .map(|device| device.index)
-            .ok_or_else(|| Error::NoDevice(format!("there is no Vulkan device {index}; there are:{}", listing()))),
+            .ok_or_else(|| Error::NotFound(format!("there is no Vulkan device {index}; there are:{}", listing()))),
         Choice::Name(name) => match named(name, "--device")?[..] {
             [device] => Ok(device.index),
-            _ => Err(Error::NoDevice(format!(
+            _ => Err(Error::NotFound(format!(
                 "--device '{name}' matches several Vulkan devices; choose one by its index:{}",
                 listing()
             ))),

@@ -145,6 +145,11 @@ impl Diagnosis {
         }
     }
 
+    /// Whether there is a device after all.
+    pub(super) fn finds_some(&self) -> bool {
+        self.usable > 0
+    }
+
     /// Why there is no device.
     pub(super) fn why_none(&self) -> String {
         // Where there are devices, it is none of their drivers that has failed.

@@ -4,7 +4,56 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::tuning::Tuning;
+use crate::tuning::{Class, Tuning};
+
+/// What sort of device it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum DeviceKind {
+    /// A GPU with memory of its own.
+    Discrete,
+    /// A GPU that shares the CPU's memory.
+    Integrated,
+    /// A GPU as a virtual machine shows it.
+    Virtual,
+    /// A driver that calculates on the CPU, such as lavapipe.
+    Software,
+    /// One that says nothing of itself.
+    Other,
+}
+
+impl DeviceKind {
+    fn of(kind: wgpu::DeviceType) -> Self {
+        match kind {
+            wgpu::DeviceType::DiscreteGpu => Self::Discrete,
+            wgpu::DeviceType::IntegratedGpu => Self::Integrated,
+            wgpu::DeviceType::VirtualGpu => Self::Virtual,
+            wgpu::DeviceType::Cpu => Self::Software,
+            wgpu::DeviceType::Other => Self::Other,
+        }
+    }
+
+    /// The class whose numbers it wants. What says nothing of itself is taken for the slower kind of hardware.
+    pub fn class(self) -> Class {
+        match self {
+            Self::Software => Class::Software,
+            Self::Discrete | Self::Virtual => Class::Discrete,
+            Self::Integrated | Self::Other => Class::Integrated,
+        }
+    }
+}
+
+impl fmt::Display for DeviceKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Discrete => "discrete",
+            Self::Integrated => "integrated",
+            Self::Virtual => "virtual",
+            Self::Software => "software",
+            Self::Other => "other",
+        })
+    }
+}
 
 /// One Vulkan device as a user sees it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
@@ -13,9 +62,9 @@ pub struct DeviceInfo {
     pub index: usize,
     /// The device's name.
     pub name: String,
-    /// Discrete, integrated, virtual or software.
+    /// What sort of device it is.
     #[serde(rename = "type")]
-    pub kind: &'static str,
+    pub kind: DeviceKind,
     /// The driver with its version.
     pub driver: String,
     /// PCI id such as `0000:01:00.0`; empty for devices without one.
@@ -41,13 +90,7 @@ impl DeviceInfo {
         Self {
             index,
             name: info.name,
-            kind: match info.device_type {
-                wgpu::DeviceType::DiscreteGpu => "discrete",
-                wgpu::DeviceType::IntegratedGpu => "integrated",
-                wgpu::DeviceType::VirtualGpu => "virtual",
-                wgpu::DeviceType::Cpu => "software",
-                wgpu::DeviceType::Other => "other",
-            },
+            kind: DeviceKind::of(info.device_type),
             driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
             pci: info.device_pci_bus_id,
             f64: adapter.features().contains(wgpu::Features::SHADER_F64 | wgpu::Features::SHADER_INT64),
@@ -76,11 +119,11 @@ impl DeviceInfo {
     /// Better devices first: real before virtual before software; the power preference swaps the first two.
     pub(super) fn rank(&self, low_power: bool) -> u8 {
         match (self.kind, low_power) {
-            ("discrete", false) | ("integrated", true) => 0,
-            ("integrated", false) | ("discrete", true) => 1,
-            ("virtual", _) => 2,
-            ("software", _) => 4,
-            _ => 3,
+            (DeviceKind::Discrete, false) | (DeviceKind::Integrated, true) => 0,
+            (DeviceKind::Integrated, false) | (DeviceKind::Discrete, true) => 1,
+            (DeviceKind::Virtual, _) => 2,
+            (DeviceKind::Other, _) => 3,
+            (DeviceKind::Software, _) => 4,
         }
     }
 }

@@ -7,7 +7,7 @@ use super::calls::{self, Call};
 use super::choose::{Choice, chosen};
 use super::error::Error;
 use super::guard::guarded;
-use super::info::DeviceInfo;
+use super::info::{DeviceInfo, DeviceKind};
 
 /// An open device.
 #[derive(Debug)]
@@ -54,13 +54,12 @@ impl Device {
     /// `WGPU_ADAPTER_NAME` and `WGPU_POWER_PREF` decide where the choice leaves it open.
     pub fn open(choice: &Choice) -> Result<Self, Error> {
         let (info, adapter) = chosen(choice)?;
-        let name = info.to_string();
-        guarded(|| Self::open_adapter(info, &adapter))
-            .unwrap_or_else(|why| Err(Error::NoDevice(format!("{name} cannot be opened: {why}"))))
+        let opened = info.clone();
+        guarded(|| Self::open_adapter(opened, &adapter)).unwrap_or_else(|why| Err(does_not_open(&info, &why)))
     }
 
     fn open_adapter(info: DeviceInfo, adapter: &wgpu::Adapter) -> Result<Self, Error> {
-        let shares_memory = matches!(info.kind, "software" | "integrated");
+        let shares_memory = matches!(info.kind, DeviceKind::Software | DeviceKind::Integrated);
         let mut features = wgpu::Features::SHADER_F64
             | wgpu::Features::SHADER_INT64
             | wgpu::Features::TIMESTAMP_QUERY
@@ -71,13 +70,15 @@ impl Device {
         }
         let features = features & adapter.features();
         if !features.contains(wgpu::Features::PASSTHROUGH_SHADERS) {
-            return Err(Error::NoDevice(format!("{info} takes no SPIR-V, which alone says how to round")));
+            return Err(Error::unsuitable(&info, "it takes no SPIR-V, which alone says how to round"));
         }
         let uniform = adapter.limits().max_uniform_buffer_binding_size;
         if uniform < LEAST_UNIFORM {
             let limit = "max_uniform_buffer_binding_size (Vulkan's maxUniformBufferRange)";
-            let why = format!("{limit} is {uniform} bytes, and the kernels need {LEAST_UNIFORM}");
-            return Err(Error::NoDevice(format!("{info} cannot render: {why}")));
+            return Err(Error::unsuitable(
+                &info,
+                format!("{limit} is {uniform} bytes, of {LEAST_UNIFORM} that it needs"),
+            ));
         }
         let request = adapter.request_device(&wgpu::DeviceDescriptor {
             label: None,
@@ -86,8 +87,7 @@ impl Device {
             memory_hints: wgpu::MemoryHints::MemoryUsage,
             ..wgpu::DeviceDescriptor::default()
         });
-        let (device, queue) =
-            pollster::block_on(request).map_err(|e| Error::NoDevice(format!("{info} cannot be opened: {e}")))?;
+        let (device, queue) = pollster::block_on(request).map_err(|error| does_not_open(&info, &error.to_string()))?;
 
         let failure = Arc::new(Mutex::new(None));
         let slot = Arc::clone(&failure);
@@ -108,7 +108,7 @@ impl Device {
         let value = action();
         match self.failure.lock().unwrap_or_else(PoisonError::into_inner).take() {
             None => Ok(value),
-            Some(Failure::Limit(why)) => Err(Error::NoDevice(format!("{} is too small for {what}: {why}", self.info))),
+            Some(Failure::Limit(why)) => Err(Error::too_large(&self.info, what, why)),
             Some(Failure::Broken(why)) => Err(Error::Lost(format!("{what} on {}: {why}", self.info))),
         }
     }
@@ -159,6 +159,10 @@ impl Device {
         let _call = Call::begin();
         self.queue.submit(commands)
     }
+}
+
+fn does_not_open(info: &DeviceInfo, why: &str) -> Error {
+    Error::unsuitable(info, format!("it does not open: {why}"))
 }
 
 fn note(slot: &Mutex<Option<Failure>>, failure: Failure) {

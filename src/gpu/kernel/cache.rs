@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 use crate::cache;
+use crate::gpu::device::info::DeviceKind;
 use crate::gpu::device::open::Device;
 
 /// Set to 0, this variable keeps every device from using such a file; set to 1, it lets software devices use one.
@@ -25,11 +26,11 @@ pub(super) struct KernelCache {
 
 impl KernelCache {
     /// Whether a device of this type uses one.
-    fn is_wanted(kind: &str) -> bool {
+    fn is_wanted(kind: DeviceKind) -> bool {
         match std::env::var(SWITCH) {
             Ok(value) if value == "0" => false,
             Ok(value) if value == "1" => true,
-            _ => kind != "software",
+            _ => kind != DeviceKind::Software,
         }
     }
 

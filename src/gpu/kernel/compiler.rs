@@ -23,7 +23,7 @@ impl Compiler<'_> {
         constants: &[(&str, f64)],
         bindings: &[u32],
     ) -> Result<wgpu::ShaderModule, Error> {
-        let words = module.spirv(entry_point, constants, bindings).map_err(Error::Lost)?;
+        let words = module.spirv(entry_point, constants, bindings).map_err(Error::Shader)?;
         self.device.checked("reading the shader", || {
             #[allow(
                 unsafe_code,

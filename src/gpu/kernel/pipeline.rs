@@ -46,7 +46,7 @@ pub(crate) fn compile(
     specialisation: &Specialisation,
 ) -> Result<Stages, Error> {
     let constants = specialisation.constants();
-    let parsed = |module: &Module| Parsed::new(module).map_err(Error::Lost);
+    let parsed = |module: &Module| Parsed::new(module).map_err(Error::Shader);
     let own;
     let module = if let Some(module) = ahead {
         module
@@ -54,10 +54,10 @@ pub(crate) fn compile(
         own = parsed(&specialisation.module())?;
         &own
     };
-    let Storage::Tables(textures) = specialisation.storage else {
-        return Err(Error::Lost("only scenes in tables are rendered".into()));
-    };
-    let [words, pairs, vectors] = [1, 2, 4].map(|components| Table(textures, components));
+    let [words, pairs, vectors] = [1, 2, 4].map(|components| match specialisation.storage {
+        Storage::Tables(textures) => Table(textures, components),
+        Storage::Ranges => Read,
+    });
     // What every stage reads and writes.
     let mut common = vec![(0, Uniform), (7, ReadWrite), (8, ReadWrite), (13, pairs), (17, pairs)];
     common.extend([1, 2, 3, 14, 20].map(|binding| (binding, vectors)));

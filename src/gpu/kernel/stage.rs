@@ -106,10 +106,8 @@ impl Stage {
         let most = device.raw.limits().max_storage_buffers_per_shader_stage;
         let buffers = bindings.iter().filter(|(_, access)| matches!(access, Access::Read | Access::ReadWrite)).count();
         if buffers > most as usize {
-            let limit = "max_storage_buffers_per_shader_stage";
-            let message =
-                format!("{} is too small for {entry_point}: {limit} is {most}, and it uses {buffers}", device.info);
-            return Err(Error::NoDevice(message));
+            let limit = format!("max_storage_buffers_per_shader_stage is {most}, and it uses {buffers}");
+            return Err(Error::too_large(&device.info, entry_point, limit));
         }
         let entries: Vec<_> = bindings.iter().map(entry).collect();
         let mut bindings: Vec<_> = bindings.iter().map(|(binding, _)| *binding).collect();

@@ -32,7 +32,7 @@ impl Job<'_> {
     }
 
     fn run_once(&self, compiler: Compiler) -> Result<Vec<u32>, Error> {
-        let module = Parsed::new(self.module).map_err(Error::Lost)?;
+        let module = Parsed::new(self.module).map_err(Error::Shader)?;
         let inputs = self.inputs.iter().map(|&(binding, access, _)| (binding, access));
         let bindings: Vec<_> = inputs.chain([(self.output, Access::ReadWrite)]).collect();
         let stage = Stage::new(compiler, &module, self.entry_point, &[], &bindings)?;

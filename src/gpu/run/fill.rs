@@ -90,9 +90,8 @@ impl<'a> Reconstructor<'a> {
         let bytes = pixel_count(samples) as u64 * 4;
         let limit = device.info.max_storage_binding.min(device.info.max_buffer);
         if bytes > limit {
-            let message =
-                format!("the nearest samples take {bytes} bytes, but {} binds {limit} at the most", device.info);
-            return Err(Error::NoDevice(message));
+            let limit = format!("they take {bytes} bytes, and it binds {limit} at the most");
+            return Err(Error::too_large(&device.info, "the nearest samples", limit));
         }
         let mut owners = vec![NO_SAMPLE; pixel_count(samples)];
         for pixel in samples.pixels() {
@@ -139,7 +138,7 @@ fn storage(device: &Device, values: &[u32]) -> wgpu::Buffer {
 /// A kernel whose bindings are used like this, in their order.
 fn stage(compiler: Compiler, module: &Module, entry_point: &str, uses: &[Access]) -> Result<Stage, Error> {
     let bindings: Vec<_> = (0..).zip(uses.iter().copied()).collect();
-    Stage::new(compiler, &Parsed::new(module).map_err(Error::Lost)?, entry_point, &[], &bindings)
+    Stage::new(compiler, &Parsed::new(module).map_err(Error::Shader)?, entry_point, &[], &bindings)
 }
 
 /// Binds buffers in the order of their bindings.

@@ -229,13 +229,13 @@ pub struct Prober<'a> {
 }
 
 impl<'a> Prober<'a> {
-    /// Composes the module; [`Error::NoDevice`] where the device refuses the tier.
+    /// Composes the module; [`Error::ArithmeticRefused`] where the device's is not that of the tier.
     pub fn new(gpu: &'a Gpu, kernel: Kernel) -> Result<Self, Error> {
         let kernel = match kernel {
             Kernel::Tier(tier) => gpu.kernel(tier)?,
             kernel => kernel,
         };
-        let module = Parsed::new(&Module::probe(kernel)).map_err(Error::Lost)?;
+        let module = Parsed::new(&Module::probe(kernel)).map_err(Error::Shader)?;
         let module = if kernel == Kernel::NoBarrier { module.contractible() } else { module };
         Ok(Self { gpu, kernel, module, stages: HashMap::new(), busy: Duration::ZERO })
     }

@@ -59,13 +59,8 @@ impl SelfTest {
         }
         let test = Self::run(gpu)?;
         if !test.passed() {
-            let Self { pairs, sum_mismatches, product_mismatches } = test;
-            return Err(Error::NoDevice(format!(
-                "{} does not keep error-free transforms: of {pairs} pairs, {sum_mismatches} sums and \
-                 {product_mismatches} products are off. Precision `robust` needs them, and `double` where a \
-                 device has no f64; `--device cpu` does not",
-                gpu.device.info
-            )));
+            let Self { pairs, sum_mismatches: sums, product_mismatches: products } = test;
+            return Err(Error::ArithmeticRefused { device: gpu.device.info.to_string(), pairs, sums, products });
         }
         // Without a cache folder the test, which takes milliseconds, is simply made again.
         if let Some(file) = record

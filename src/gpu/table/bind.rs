@@ -113,9 +113,10 @@ pub(crate) fn check_fits(device: &Device, packed: &Packed, lists: &[Contents; 2]
     ]);
     match too_large(&sizes) {
         None => Ok(()),
-        Some((what, size, limit)) => Err(Error::NoDevice(format!(
-            "the {what} of this scene take {size} bytes, but {} holds {limit} at the most; `--device cpu` has no such limit",
-            device.info
-        ))),
+        Some((what, size, limit)) => Err(Error::too_large(
+            &device.info,
+            "this scene",
+            format!("the {what} take {size} bytes, and it holds {limit} at the most; `--device cpu` has no such limit"),
+        )),
     }
 }
