@@ -267,7 +267,7 @@ fn judge_of_unknown(
         // The picture is there without a device, too.
         Choice::Auto => open_device(&Choice::Auto)
             .inspect_err(|error| {
-                errln!("trueray: judged as a picture of hardware, since no device can be used here: {error}")
+                errln!("trueray: judged as a picture of hardware, since no device can be used here: {error}");
             })
             .ok(),
         choice => Some(open_device(choice)?),

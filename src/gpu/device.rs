@@ -415,12 +415,12 @@ impl Gpu {
     }
 
     /// Waits until this submission is done, or all of them.
-    pub(super) fn wait_until(&self, submission_index: Option<wgpu::SubmissionIndex>) -> Result<(), Error> {
+    pub(super) fn wait_until(&self, submission_index: Option<&wgpu::SubmissionIndex>) -> Result<(), Error> {
         let patience = calls::patience().as_secs();
         // Of a process that is stopped no more than one second counts.
         for _ in 0..patience {
             let wait = wgpu::PollType::Wait {
-                submission_index: submission_index.clone(),
+                submission_index: submission_index.cloned(),
                 timeout: Some(Duration::from_secs(1)),
             };
             let call = Call::begin();

@@ -149,7 +149,7 @@ pub(super) fn texels(gpu: &Gpu, contents: &Contents, components: u32) -> Result<
         let submission_index = Some(gpu.submit(Some(encoder.finish())));
         // One band is packed while the one before is copied; only then is the memory on the way free for the next.
         if let Some(before) = on_the_way.replace(submission_index) {
-            gpu.wait_until(before)?;
+            gpu.wait_until(before.as_ref())?;
         }
     }
     Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))

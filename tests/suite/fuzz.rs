@@ -152,16 +152,16 @@ fn hostile_scene() -> impl Strategy<Value = String> {
         ]),
     ];
     (near, window, spheres, lights, color()).prop_map(|(near, window, spheres, lights, back)| {
-        let mut text = format!("NEAR {near}\n{window}\nRES 5 4\nAMBIENT 0.2 0.2 0.2\nBACK {}\n", back.join(" "));
-        for (index, (center, sides, color, weights, exponent, glass)) in spheres.iter().enumerate() {
+        let sphere = |(center, sides, color, weights, exponent, glass): &(_, Vec<_>, Vec<_>, Vec<_>, _, Option<_>)| {
+            let glass = glass.map_or(String::new(), |(kt, eta): (f64, &str)| format!("{kt} {eta}"));
             let (sides, color, weights) = (sides.join(" "), color.join(" "), weights.join(" "));
-            text += &format!("SPHERE s{index} {center} {sides} {color} {weights} {exponent}");
-            text += &glass.map_or("\n".into(), |(kt, ior)| format!(" {kt} {ior}\n"));
-        }
-        for (index, (position, color)) in lights.iter().enumerate() {
-            text += &format!("LIGHT l{index} {position} {}\n", color.join(" "));
-        }
-        text
+            format!("SPHERE s {center} {sides} {color} {weights} {exponent} {glass}\n")
+        };
+        let light = |(position, color): &(String, Vec<_>)| format!("LIGHT l {position} {}\n", color.join(" "));
+        let (spheres, lights): (String, String) =
+            (spheres.iter().map(sphere).collect(), lights.iter().map(light).collect());
+        let back = back.join(" ");
+        format!("NEAR {near}\n{window}\nRES 5 4\nAMBIENT 0.2 0.2 0.2\nBACK {back}\n{spheres}{lights}")
     })
 }
 
