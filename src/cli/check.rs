@@ -148,7 +148,7 @@ impl Contents {
 /// What `render` would say of the file that OUTPUT names, run in this folder.
 fn named_doubt(scene: &Scene) -> Option<String> {
     let refused = check_named(Path::new(scene.output.as_ref()?)).err()?;
-    Some(format!("`render` would refuse this: {}", refused.message))
+    Some(format!("without -o there is no picture: {}", refused.message.lines().next()?))
 }
 
 pub(super) fn run(args: &Args) -> u8 {

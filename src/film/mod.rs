@@ -105,6 +105,24 @@ impl Picture {
         self.row(y)[x as usize]
     }
 
+    /// Reads a PPM or PNG file, which has to be as the formats demand.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or is no such picture.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, ReadError> {
+        Ok(read_picture(path.as_ref(), Leniency::Strict)?.picture)
+    }
+
+    /// Writes a PNG or PPM (P6) file, as the ending of its name says: complete, or not at all.
+    ///
+    /// # Errors
+    /// A file that cannot be written, or has another ending.
+    pub fn write(&self, path: impl AsRef<Path>) -> Result<(), OutputError> {
+        let target = Target::File(path.as_ref().to_owned());
+        let format = Format::from_extension(path.as_ref()).ok_or_else(|| target.unknown_ending())?;
+        self.save(&target, format)
+    }
+
     /// Writes the whole picture, see [`PictureWriter`].
     pub fn save(&self, target: &Target, format: Format) -> Result<(), OutputError> {
         let mut writer = PictureWriter::create(target, format, self.width, self.height)?;

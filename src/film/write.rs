@@ -35,6 +35,12 @@ impl Target {
         }
     }
 
+    /// A file whose name does not say how to write it.
+    pub(super) fn unknown_ending(&self) -> OutputError {
+        let why = "the name has to end in .ppm or .png";
+        self.error("choose the format of", io::Error::new(io::ErrorKind::InvalidInput, why))
+    }
+
     fn error(&self, attempted: &'static str, source: io::Error) -> OutputError {
         OutputError { target: self.clone(), attempted, source }
     }

@@ -2,12 +2,14 @@
 //!
 //! This module knows nothing of rendering; every number is kept as the `f64` that the text names.
 
+mod check;
 mod diagnostics;
 mod foreign;
 mod model;
 mod parse;
 mod write;
 
+pub use check::{Invalid, SceneError};
 pub use diagnostics::{Diagnostic, Omitted, Severity};
 pub use foreign::foreign_kind;
 pub use model::{Light, MAX_RESOLUTION, Names, Scene, Sphere, Window};

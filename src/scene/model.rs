@@ -8,7 +8,9 @@ use crate::words::visible;
 pub const MAX_RESOLUTION: u32 = 1 << 24;
 
 /// A whole scene: what is seen, from where, and where the picture goes.
-#[derive(Debug, Clone, PartialEq)]
+///
+/// Fields can be set at will: `Scene { spheres, lights, ..Scene::new(window, 640, 480) }`.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Scene {
     /// The window on the image plane through which the eye at the origin looks down −Z.
     pub window: Window,
@@ -18,11 +20,11 @@ pub struct Scene {
     pub height: u32,
     /// Spheres in the order of the file; the index of a sphere is its place here.
     pub spheres: Vec<Sphere>,
-    /// The label of each sphere, same order as `spheres`.
+    /// The label of each sphere, same order as `spheres`; may lack some.
     pub sphere_names: Names,
     /// Point lights in the order of the file.
     pub lights: Vec<Light>,
-    /// The label of each light, same order as `lights`.
+    /// The label of each light, same order as `lights`; may lack some.
     pub light_names: Names,
     /// `BACK`: the colour of a primary ray that hits nothing.
     pub background: DVec3,
@@ -33,6 +35,8 @@ pub struct Scene {
 }
 
 /// The window `LEFT RIGHT BOTTOM TOP` on the image plane z = −`near`.
+///
+/// The default is what the eye sees at 90 degrees: NEAR 1, edges at ±1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
     /// Distance of the image plane, > 0.
@@ -45,6 +49,12 @@ pub struct Window {
     pub bottom: f64,
     /// y of the top edge of row 0.
     pub top: f64,
+}
+
+impl Default for Window {
+    fn default() -> Self {
+        Self { near: 1.0, left: -1.0, right: 1.0, bottom: -1.0, top: 1.0 }
+    }
 }
 
 /// One `SPHERE` line: the unit sphere, scaled by `scale`, then moved to `center`.
@@ -70,6 +80,21 @@ pub struct Sphere {
     pub kt: f64,
     /// Index of refraction of the inside relative to the outside, > 0; 1 where the line does not carry it.
     pub eta: f64,
+}
+
+impl Sphere {
+    /// A sphere of matt material.
+    pub fn new(center: impl Into<DVec3>, radius: f64, color: impl Into<DVec3>) -> Self {
+        Self { center: center.into(), scale: DVec3::splat(radius), color: color.into(), ..Self::default() }
+    }
+}
+
+/// The unit sphere, white and matt: all of the ambient light, all of the diffuse term, nothing else.
+impl Default for Sphere {
+    fn default() -> Self {
+        let (center, scale, color) = (DVec3::ZERO, DVec3::ONE, DVec3::ONE);
+        Self { center, scale, color, ka: 1.0, kd: 1.0, ks: 0.0, kr: 0.0, n: 1.0, kt: 0.0, eta: 1.0 }
+    }
 }
 
 /// One `LIGHT` line: a point light.

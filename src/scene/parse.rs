@@ -9,7 +9,8 @@ mod number;
 
 use glam::DVec3;
 
-use self::keyword::{Field, Guess, Keyword, MAX_FIELDS, Rule};
+pub(super) use self::keyword::{Field, Keyword};
+use self::keyword::{Guess, MAX_FIELDS, Rule};
 use self::number::{Fault, is_tiny, parse_number};
 use super::diagnostics::{Collector, Detail, Diagnostic, Line, Omitted, Place, Span, Topic, render, shown};
 use super::{Light, MAX_RESOLUTION, Names, Scene, Sphere, Window};
@@ -243,15 +244,12 @@ impl<'a> Parser<'a> {
                 Detail::new(format!("`{}` is too near to 0 for full precision", shown(token)), "read as about 0")
             });
         }
+        if !field.rule.takes(number) {
+            self.collector.error(place, || out_of_range(keyword, field, token));
+            return false;
+        }
         let usual = match field.rule {
-            Rule::Any | Rule::Pixels => return true,
-            Rule::NonZero if number != 0.0 => return true,
-            Rule::Positive if number > 0.0 => return true,
-            Rule::NotNegative if number >= 0.0 => return true,
-            Rule::NonZero | Rule::Positive | Rule::NotNegative => {
-                self.collector.error(place, || out_of_range(keyword, field, token));
-                return false;
-            }
+            Rule::Any | Rule::Pixels | Rule::NonZero | Rule::Positive | Rule::NotNegative => true,
             Rule::Color | Rule::Coefficient => (0.0..=1.0).contains(&number),
             Rule::Intensity => number >= 0.0 && number != WHITE_LEVEL,
         };
@@ -478,12 +476,8 @@ fn mirrored_window(low: Keyword, high: Keyword) -> Detail<'static> {
 
 fn out_of_range(keyword: Keyword, field: &Field, token: &[u8]) -> Detail<'static> {
     let (text, name, token) = (keyword.text(), field.name, shown(token));
-    let expected = match field.rule {
-        Rule::NonZero => "expected a number other than 0",
-        Rule::NotNegative => "expected 0 or a number greater than 0",
-        _ => "expected a number greater than 0",
-    };
-    let detail = Detail::new(format!("`{name}` of {text} cannot be {token}"), format!("{expected}: {}", field.about));
+    let expected = format!("{}: {}", field.rule.expected(), field.about);
+    let detail = Detail::new(format!("`{name}` of {text} cannot be {token}"), expected);
     match (keyword, field.rule) {
         (_, Rule::NonZero) => {
             detail.help("a sphere without thickness cannot be rendered; use a small scale like 0.001")

@@ -24,6 +24,7 @@ mod film;
 mod fuzz;
 mod golden;
 mod keys;
+mod library;
 mod lists;
 mod magnitudes;
 mod messages;

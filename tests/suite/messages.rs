@@ -136,6 +136,35 @@ fn doubts_are_warnings_of_check_and_render() {
     assert_exit(&place.run("check scene.txt"), 0, "(-1.9, -2, -7.5) to (1.9, 2, -3.5)");
 }
 
+#[test]
+fn check_doubts_a_name_that_render_refuses() {
+    let place = Place::new(&[("scene.txt", SCENE.replace("out.ppm", ".hidden.ppm").as_bytes())]);
+    let why = "OUTPUT would write `.hidden.ppm`, a hidden file";
+    assert_exit(&place.run("check scene.txt"), 0, &format!("warning: without -o there is no picture: {why}\n"));
+    assert_exit(&place.run("render --device cpu scene.txt"), 6, why);
+}
+
+#[test]
+fn a_comparison_says_why_it_looks_at_no_device() {
+    let place = Place::new(&[("scene.txt", SCENE.as_bytes())]);
+    assert_exit(&place.run("render --device cpu scene.txt"), 0, "");
+    let compare = |device| {
+        let mut command = place.command(&["compare", "--scene", "scene.txt", "--device", device, "out.ppm"]);
+        command.env("VK_DRIVER_FILES", place.path().join("none.json")).output().unwrap()
+    };
+    assert_exit(&compare("auto"), 0, "judged as a picture of hardware, since no device can be used here: no Vulkan");
+    assert!(!said(&compare("cpu")).contains("Vulkan"));
+}
+
+#[test]
+fn patience_is_a_number_of_seconds() {
+    let place = Place::new(&[("scene.txt", SCENE.as_bytes())]);
+    for patience in ["soon", "-1", "0", ""] {
+        let output = place.command(&["check", "scene.txt"]).env("TRUERAY_PATIENCE", patience).output().unwrap();
+        assert_exit(&output, 2, "TRUERAY_PATIENCE is ");
+    }
+}
+
 /// An escape that sets the window's title, a bell, marks of the direction of writing and of nothing.
 const HOSTILE: &str = "a\u{1b}]0;PWN\u{7}\u{202e}\u{2066}\u{61c}\u{200b}\u{9b}b";
 

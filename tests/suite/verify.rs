@@ -69,6 +69,11 @@ impl Driver {
             .env("VK_DRIVER_FILES", self.folder.path().join("driver.json"))
             .env("INNER", &self.inner)
             .env("FAULT", fault)
+            // What does not answer here never will.
+            .env(
+                "TRUERAY_PATIENCE",
+                if fault.ends_with("drop") && fault.starts_with("vkQueueSubmit") { "1" } else { "120" },
+            )
             .stdin(Stdio::null())
             .output()
             .unwrap();
@@ -148,6 +153,16 @@ fn a_command_that_is_dropped_is_missed() {
     // Without the reference's pixels nobody would know.
     let (code, _, picture) = driver.run("vkCmdCopyBufferToImage:1:drop", "--verify none");
     assert!(code == Some(0) && picture != driver.right);
+}
+
+/// A submission that never comes: the driver waits inside the next one, or what waits for it has a limit.
+#[test]
+fn a_submission_that_is_dropped_ends_the_run() {
+    let Some(driver) = Driver::new("a_submission_that_is_dropped_ends_the_run") else { return };
+    for call in [1, 8] {
+        let (code, stderr, picture) = driver.run(&format!("vkQueueSubmit:{call}:drop"), "");
+        assert!(code == Some(5) && picture == OLD && stderr.contains("sets the limit"), "{call}: {code:?}, {stderr}");
+    }
 }
 
 #[test]

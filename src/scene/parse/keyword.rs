@@ -8,7 +8,7 @@ pub(super) const MAX_FIELDS: usize = 16;
 
 /// The first word of a statement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Keyword {
+pub(in super::super) enum Keyword {
     Near,
     Left,
     Right,
@@ -23,25 +23,25 @@ pub(super) enum Keyword {
 }
 
 /// What follows a keyword.
-pub(super) struct Form {
+pub(in super::super) struct Form {
     /// Whether a name comes first.
     pub(super) named: bool,
-    pub(super) fields: &'static [Field],
+    pub(in super::super) fields: &'static [Field],
     /// How many fields may be left out at the end, all or none.
     pub(super) optional: usize,
 }
 
 /// One number of a statement.
-pub(super) struct Field {
+pub(in super::super) struct Field {
     /// As it is called in the documentation of the format.
-    pub(super) name: &'static str,
+    pub(in super::super) name: &'static str,
     pub(super) about: &'static str,
-    pub(super) rule: Rule,
+    pub(in super::super) rule: Rule,
 }
 
 /// Which numbers a field takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Rule {
+pub(in super::super) enum Rule {
     /// All finite ones.
     Any,
     /// Not 0.
@@ -58,6 +58,28 @@ pub(super) enum Rule {
     Coefficient,
     /// Usually at least 0, and no level of 255.
     Intensity,
+}
+
+impl Rule {
+    /// Whether a finite number is one of them.
+    pub(in super::super) fn takes(self, number: f64) -> bool {
+        match self {
+            Self::NonZero => number != 0.0,
+            Self::Positive => number > 0.0,
+            Self::NotNegative => number >= 0.0,
+            Self::Any | Self::Pixels | Self::Color | Self::Coefficient | Self::Intensity => true,
+        }
+    }
+
+    /// What a number that is none of them should have been.
+    pub(in super::super) fn expected(self) -> &'static str {
+        match self {
+            Self::NonZero => "expected a number other than 0",
+            Self::Positive => "expected a number greater than 0",
+            Self::NotNegative => "expected 0 or a number greater than 0",
+            Self::Any | Self::Pixels | Self::Color | Self::Coefficient | Self::Intensity => "expected a finite number",
+        }
+    }
 }
 
 const fn field(name: &'static str, about: &'static str, rule: Rule) -> Field {
@@ -155,7 +177,7 @@ impl Keyword {
         Self::ALL.into_iter().find(|keyword| keyword.text().as_bytes() == token)
     }
 
-    pub(super) const fn text(self) -> &'static str {
+    pub(in super::super) const fn text(self) -> &'static str {
         match self {
             Self::Near => "NEAR",
             Self::Left => "LEFT",
@@ -171,7 +193,7 @@ impl Keyword {
         }
     }
 
-    pub(super) const fn form(self) -> &'static Form {
+    pub(in super::super) const fn form(self) -> &'static Form {
         match self {
             Self::Near => const { &Form::numbers(NEAR) },
             Self::Left => const { &Form::numbers(LEFT) },
