@@ -2,6 +2,7 @@
 
 mod ahead;
 pub mod calls;
+mod compose;
 mod compute;
 mod device;
 mod diagnosis;

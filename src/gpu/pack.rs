@@ -156,7 +156,7 @@ impl<'a> Packed<'a> {
     }
 }
 
-/// Vectors of a material, as `shaders/many.wgsl` has it: all three, or all but the way out of object space.
+/// Vectors of a material, as `shaders/scene_tables.wgsl` has it: all three, or all but the way out of object space.
 pub(super) fn material_vectors(effects: EffectSet) -> usize {
     if effects.has(Effect::Ellipsoids) { 3 } else { 2 }
 }

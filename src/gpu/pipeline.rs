@@ -110,7 +110,7 @@ impl Specialisation {
         self.effects.has(Effect::Ellipsoids) || self.shared_surfaces
     }
 
-    /// Vectors that keep a path: as `shaders/paths.wgsl` has them.
+    /// Vectors that keep a path: as `shaders/path_kept.wgsl` has them.
     pub(super) fn path_vectors(&self) -> u64 {
         4 + u64::from(self.kernel.carries_low())
     }
@@ -134,9 +134,11 @@ impl Specialisation {
         ];
         if self.keeps_paths() {
             constants.push(("VECTORS", self.path_vectors() as f64));
-            if let Walk::InTurn(paths) = self.walk {
-                constants.push(("PATHS", f64::from(paths.get())));
-            }
+            let paths = match self.walk {
+                Walk::InTurn(paths) => paths.get(),
+                Walk::InPlace | Walk::AtOnce => 1,
+            };
+            constants.push(("PATHS", f64::from(paths)));
         }
         if self.storage != Storage::Ranges {
             if self.places == Places::Large {
@@ -161,7 +163,7 @@ impl Specialisation {
 
     /// Whether paths are kept from bounce to bounce.
     pub(super) fn keeps_paths(&self) -> bool {
-        self.refraction.is_none() && self.walk != Walk::InPlace
+        self.variant().keeps_paths()
     }
 
     /// Whether the loops of an invocation walk more than one bounce of one path.
@@ -184,6 +186,10 @@ pub const WALK_PATHS: &str = "walk_paths";
 
 /// The entry point that shades what they have met, where several share an invocation.
 pub const SHADE_PATHS: &str = "shade_paths";
+/// The entry point that goes before each bounce of paths.
+pub const BEGIN_BOUNCE: &str = "begin_bounce";
+/// The entry point that makes pixels of samples.
+pub const RESOLVE: &str = "resolve";
 
 /// The kernels of a bounce of the paths.
 #[derive(Debug)]
@@ -243,17 +249,14 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
     };
     let between = || {
         let module = parsed(&Module::between_stages())?;
-        let mut group = vec![("GROUP", f64::from(specialisation.workgroup))];
-        group.extend(constants.iter().filter(|(name, _)| *name == "PATHS"));
-        Stage::new(gpu, &module, "begin_bounce", &group, &[(12, ReadWrite), (16, ReadWrite)])
+        Stage::new(gpu, &module, BEGIN_BOUNCE, &constants, &[(12, ReadWrite), (16, ReadWrite)])
     };
     let resolve = || {
         if specialisation.samples == 1 {
             return Ok(None);
         }
         let module = parsed(&Module::resolve(specialisation.kernel))?;
-        let constants = [("SAMPLES", f64::from(specialisation.samples))];
-        Stage::new(gpu, &module, "resolve", &constants, &[(0, Uniform), (7, Read), (15, ReadWrite)]).map(Some)
+        Stage::new(gpu, &module, RESOLVE, &constants, &[(0, Uniform), (7, Read), (15, ReadWrite)]).map(Some)
     };
     let copies: &[(u32, Access)] =
         if specialisation.variant().copies() { &[(24, vectors), (25, vectors)] } else { &[] };

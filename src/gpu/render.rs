@@ -178,7 +178,7 @@ enum Count {
     Found(u64),
 }
 
-/// The counts of workgroups in `shaders/stage.wgsl`: their bytes, and where those of the kernel with one path an invocation and
+/// The counts of workgroups in `shaders/bounce.wgsl`: their bytes, and where those of the kernel with one path an invocation and
 /// of the one with several begin.
 const WORKGROUPS_SIZE: u64 = 24;
 const ONE_PATH: u64 = 0;
@@ -187,7 +187,7 @@ const SEVERAL_PATHS: u64 = 12;
 /// Bytes of the shader's `Stage`.
 const STAGE_SIZE: u64 = 8;
 
-/// Bytes of a slot's ray counts in `shaders/film.wgsl`.
+/// Bytes of a slot's ray counts in `shaders/counters.wgsl`.
 const RAY_COUNT_SIZE: u64 = 8;
 
 impl<'a> GpuRenderer<'a> {
@@ -339,6 +339,11 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
     /// Which kernels render.
     pub fn variant(&self) -> Variant {
         self.inputs.specialisation.variant()
+    }
+
+    /// What they are specialised for.
+    pub fn specialisation(&self) -> &Specialisation {
+        &self.inputs.specialisation
     }
 
     /// Whether it tells pixels whose rays may touch a sphere or not.

@@ -64,7 +64,7 @@ pub(super) fn small_buffer(gpu: &Gpu, contents: &[u8], usage: wgpu::BufferUsages
     buffer
 }
 
-/// Texels in a row of a texture that stands for a buffer: as `place_of_texel` of `shaders/tables.wgsl` has it.
+/// Texels in a row of a texture that stands for a buffer: as `place_of_texel` of `shaders/texels.wgsl` has it.
 pub(super) const ROW: u32 = 4096;
 
 /// Greatest size of `contents` as such a texture, in bytes.
