@@ -1,4 +1,4 @@
-// In place of barrier.wgsl: nothing keeps a compiler from rewriting error-free transforms. A study of what goes wrong then;
+// In place of barrier_bits.wgsl: nothing keeps a compiler from rewriting error-free transforms. A study of what goes wrong then;
 // no picture is made with it.
 
 fn barrier(x: f32) -> f32 {

@@ -1,4 +1,5 @@
 // How far along a ray: a pair, for the kernel that stands in for f64.
+// needs: eft, real
 
 alias Distance = Pair;
 

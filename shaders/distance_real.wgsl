@@ -1,4 +1,5 @@
 // How far along a ray: one number.
+// needs: real
 
 alias Distance = real;
 

@@ -1,4 +1,5 @@
 // Every field that the host packs, read on the device and written back for the host to compare: the third lock on the layout.
+// needs: real, scene, types
 
 @group(0) @binding(21) var<storage, read_write> results: array<u32>;
 

@@ -1,4 +1,5 @@
-// The picture from the nearest samples: each pixel as fill_nearest.wgsl or fill_smooth.wgsl says.
+// The picture from the nearest samples: each pixel as filled_nearest.wgsl or filled_smooth.wgsl says.
+// needs: filled, flood
 
 // Colours of the sampled pixels, red, green, blue in the low bytes; 0 elsewhere.
 @group(0) @binding(2) var<storage, read> known: array<u32>;

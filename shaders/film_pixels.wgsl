@@ -1,4 +1,5 @@
 // One sample a pixel: its result is the pixel.
+// needs: counters, effects, quantize, real, see, slots
 
 // Red, green, blue in the low bytes, status in the high one.
 @group(0) @binding(7) var<storage, read_write> pixels: array<u32>;

@@ -1,6 +1,7 @@
 // What counts as a hit, over the roots that the tier's kernel finds; read it beside src/cpu/intersect.rs.
 //
 // No branches: software devices execute both sides of each.
+// needs: body, distance, effects, kernel, ray, real, scene, types
 
 // The sphere that a secondary ray leaves.
 struct Own {
@@ -11,6 +12,9 @@ struct Own {
     // Start of the ray in the sphere's object space.
     local: vec3r,
 }
+
+// Not the index of any shape: a primary ray leaves no sphere.
+const NO_SHAPE: u32 = 0xffffffffu;
 
 // The nearest accepted intersection.
 struct Hit {

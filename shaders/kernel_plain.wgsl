@@ -3,15 +3,7 @@
 // The quadratic |c'|^2 t^2 + 2(S'.c')t + |S'|^2 - r^2 = 0 in its numerically sound form: the discriminant from the distance of
 // the ray to the centre, the roots as a stable pair (Haines, Gunther, Akenine-Moller, "Precision Improvements for Ray/Sphere
 // Intersection", Ray Tracing Gems, chapter 7).
-
-// A sphere as this kernel reads it.
-struct Body {
-    shape: Shape,
-}
-
-fn body_of(sphere: u32) -> Body {
-    return Body(shape_of(sphere));
-}
+// needs: body, difference, distance, effects, intersect, ray, real, types
 
 // A ray's closest approach to a sphere's centre, in the sphere's object space.
 struct Approach {

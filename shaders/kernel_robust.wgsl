@@ -3,69 +3,7 @@
 // Far from the sphere the discriminant is A r^2 - |S' x c'|^2 (Lagrange's identity), whose cross product is compensated; near
 // its surface, where that cancels, it is B^2 - A C with compensated B and C. Origins, directions, centres and scales carry
 // what rounding took from them.
-
-// A place in the world.
-alias Point = Pair3;
-
-// Whether a place carries what rounding took.
-const CARRIES_LOW: bool = true;
-
-fn high_of(place: Point) -> vec3r {
-    return place.hi;
-}
-
-fn low_of(place: Point) -> vec3r {
-    return place.lo;
-}
-
-fn point_from(high: vec3r, low: vec3r) -> Point {
-    return Point(high, low);
-}
-
-// origin + t direction; the direction need not be normalised.
-struct Ray {
-    origin: Point,
-    direction: Pair3,
-    // direction . direction, of the high parts.
-    a: real,
-}
-
-fn ray_with(origin: Point, direction: Pair3) -> Ray {
-    return Ray(origin, direction, dot(direction.hi, direction.hi));
-}
-
-fn ray_from(origin: Point, direction: vec3r) -> Ray {
-    return ray_with(origin, Pair3(direction, vec3r()));
-}
-
-fn primary_ray(pixel: vec2<u32>) -> Ray {
-    let column = pixel.x;
-    let row = params.window_rows + pixel.y;
-    let low = params.window_low;
-    let sum = two_sum3(window_at(column), window_at(row));
-    // Where the sum cancels, the low parts may be the greater.
-    let direction = two_sum3(sum.hi, sum.lo + (window_at(low + column) + window_at(low + row)));
-    return ray_with(Point(vec3r(), vec3r()), direction);
-}
-
-// From a point to the light with this index, which lies at t = 1.
-fn ray_to_light(origin: Point, light: Light, index: u32) -> Ray {
-    return ray_with(origin, pair_difference3(Pair3(light.position, low_light_of(index).position), origin));
-}
-
-fn direction_of(ray: Ray) -> vec3r {
-    return ray.direction.hi;
-}
-
-// A sphere as this kernel reads it: rounded, and what rounding took.
-struct Body {
-    shape: Shape,
-    low: Shape,
-}
-
-fn body_of(sphere: u32) -> Body {
-    return Body(shape_of(sphere), low_shape_of(sphere));
-}
+// needs: body, distance, effects, eft, intersect, ray, real, roots, types
 
 // The ray in the sphere's object space.
 struct Approach {
@@ -147,22 +85,4 @@ fn local_hit(ray: Ray, body: Body, hit: Hit) -> Point {
     let root = pair_square_root(discriminant);
     let half_chord = pair_scaled3(at.direction, Pair(select(-root.hi, root.hi, hit.inside), select(-root.lo, root.lo, hit.inside)));
     return pair_quotient3(pair_sum3(perpendicular, half_chord), at.a);
-}
-
-// The place of a point of the sphere's surface, given in object space.
-fn place_of(body: Body, scale: vec3r, local: Point) -> Point {
-    var offset = local;
-    if ELLIPSOIDS {
-        // Divided by inv_scale: `scale` does not carry what rounding took from it.
-        let high = local.hi * scale;
-        let product = two_product3(high, body.shape.inv_scale);
-        let rest = ((local.hi - product.hi) - product.lo) + (local.lo - high * body.low.inv_scale);
-        offset = fast_two_sum3(high, rest * scale);
-    }
-    return pair_sum3(Pair3(body.shape.center_radius.xyz, body.low.center_radius.xyz), offset);
-}
-
-// A place seen from a corner of the world, in f32.
-fn offset_from(place: Point, corner: vec3<f32>) -> vec3<f32> {
-    return (place.hi - corner) + place.lo;
 }

@@ -1,14 +1,6 @@
 // Ray against sphere by the schoolbook: the discriminant as B^2 - A C, the roots as (-B -+ root)/A. The baseline of studies and
 // of `trueray stress`; no picture is made with it. The same functions as kernel_plain.wgsl.
-
-// A sphere as this kernel reads it.
-struct Body {
-    shape: Shape,
-}
-
-fn body_of(sphere: u32) -> Body {
-    return Body(shape_of(sphere));
-}
+// needs: body, distance, intersect, ray, real
 
 // The quadratic in the sphere's object space.
 struct Approach {

@@ -1,4 +1,5 @@
 // Rays in batches through the code that renders: src/gpu/probe.rs.
+// needs: batch, distance, intersect, ray, real, reflect, refract, scene, search, shade, types
 
 // Six numbers a ray: origin and direction.
 @group(0) @binding(13) var<storage, read> probe_reals: array<real>;

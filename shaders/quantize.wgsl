@@ -1,4 +1,5 @@
 // From colours to levels.
+// needs: real, types
 
 // The bits of a pixel's status byte.
 const STATUS_FINITE: u32 = 0u;

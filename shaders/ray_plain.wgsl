@@ -1,4 +1,5 @@
 // Rays whose places are plain vectors.
+// needs: real, scene, types
 
 // A place in the world.
 alias Point = vec3r;
@@ -45,15 +46,12 @@ fn direction_of(ray: Ray) -> vec3r {
     return ray.direction;
 }
 
-// The place of a point of the sphere's surface, given in object space.
-fn place_of(body: Body, scale: vec3r, local: vec3r) -> Point {
-    if ELLIPSOIDS {
-        return body.shape.center_radius.xyz + local * scale;
-    }
-    return body.shape.center_radius.xyz + local;
-}
-
 // A place seen from a corner of the world, in f32.
 fn offset_from(place: Point, corner: vec3<f32>) -> vec3<f32> {
     return vec3<f32>(place - vec3r(corner));
+}
+
+// From the origin, the ray's direction times the ratio, plus the offset.
+fn bent_ray(ray: Ray, origin: Point, ratio: real, offset: vec3r) -> Ray {
+    return ray_from(origin, ray.direction * ratio + offset);
 }

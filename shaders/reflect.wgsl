@@ -1,13 +1,11 @@
 // The mirrored view ray and what every secondary ray shares.
+// needs: ray, real, shade
 
 // The mirrored view ray, of unit length.
 fn reflection_ray(surface: Surface) -> Ray {
     let n_dot_v = dot(surface.normal, surface.view);
     return ray_from(surface.position, surface.normal * (n_dot_v + n_dot_v) - surface.view);
 }
-
-// Not the index of any shape: a primary ray leaves no sphere.
-const NO_SHAPE: u32 = 0xffffffffu;
 
 // The weight of a ray that `coefficient` of what has this weight follows.
 fn weakened(throughput: real, coefficient: real) -> real {

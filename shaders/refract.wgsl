@@ -1,4 +1,5 @@
 // Snell's law; read it beside src/cpu/refract.rs.
+// needs: distance, intersect, ray, real, reflect, shade
 
 // What only refraction reads of a sphere.
 struct Glass {

@@ -1,4 +1,5 @@
 // The mean over each pixel's samples.
+// needs: effects, quantize, real, types
 
 @group(0) @binding(7) var<storage, read> colors: array<vec4r>;
 @group(0) @binding(15) var<storage, read_write> pixels: array<u32>;

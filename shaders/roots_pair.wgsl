@@ -1,4 +1,5 @@
 // The last steps of the quadratic, in pairs.
+// needs: distance, eft
 
 fn square_root(x: Pair) -> Pair {
     return pair_square_root(x);

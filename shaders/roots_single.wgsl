@@ -1,4 +1,5 @@
 // The last steps of the quadratic, rounded in each.
+// needs: distance, eft
 
 fn square_root(x: Pair) -> Pair {
     return Pair(sqrt(x.hi), 0.0);

@@ -1,4 +1,5 @@
 // The nearest intersection of a ray that leaves a surface, where some spheres are in the grid and some too large for it.
+// needs: grid, intersect, ray, search
 
 // Among those outside the grid.
 fn nearest_outside(ray: Ray, exit: Exit, range: Range) -> Hit {

@@ -1,4 +1,5 @@
 // The nearest intersection of a ray that leaves a surface, where all spheres are in the grid.
+// needs: grid, intersect, ray
 
 // Among those outside the grid.
 fn nearest_outside(ray: Ray, exit: Exit, range: Range) -> Hit {

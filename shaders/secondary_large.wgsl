@@ -1,4 +1,5 @@
 // The nearest intersection of a ray that leaves a surface, where no sphere is in the grid: among all, which are few.
+// needs: body, counters, intersect, ray, search
 
 // Their number, where there are any.
 override SPHERE_COUNT: u32;

@@ -1,4 +1,5 @@
 // Error-free transforms of given pairs, for the host to check bit for bit.
+// needs: eft, types
 
 // Two operands each.
 @group(0) @binding(20) var<storage, read> operands: array<vec2<f32>>;

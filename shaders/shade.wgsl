@@ -1,4 +1,5 @@
 // The exact Phong model at a hit; read it beside src/cpu/shade.rs.
+// needs: body, counters, effects, elementary, intersect, kernel, ray, real, scene, search, types
 
 // The lit point of a hit.
 struct Surface {

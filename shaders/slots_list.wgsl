@@ -1,4 +1,5 @@
 // Single pixels of a list.
+// needs: effects, film, scene, types
 
 struct List {
     // Above the flags of a status byte.

@@ -1,4 +1,5 @@
 // All pixels of tiles.
+// needs: effects, film, scene, types
 
 struct Tiles {
     // Bits of a tile's column in its word; those above them are its row, counted from this one.

@@ -1,4 +1,5 @@
 // Tables as sampled textures: for devices with few storage textures.
+// needs: texels
 
 alias Table = texture_2d<u32>;
 alias PairTable = texture_2d<u32>;

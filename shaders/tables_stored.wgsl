@@ -1,5 +1,6 @@
-// Tables as storage textures: software devices load from them with a third of the
-// instructions that they take for the level of a sampled one.
+// Tables as storage textures: software devices load from them with a third of the instructions that they take for
+// the level of a sampled one.
+// needs: texels
 
 alias Table = texture_storage_2d<rgba32uint, read>;
 alias PairTable = texture_storage_2d<rg32uint, read>;

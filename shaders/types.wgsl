@@ -1,4 +1,5 @@
 // What the host packs: src/gpu/layout.rs has the same structs under the same names, held together by tests.
+// needs: real
 
 struct Params {
     background: vec3r,
@@ -30,7 +31,7 @@ struct Params {
     window_low: u32,
     light_count: u32,
     max_depth: u32,
-    // 0, which no compiler knows: see barrier() in eft.wgsl.
+    // 0, which no compiler knows: see barrier().
     zero: u32,
     // Where in `entries` those of the grid begin.
     grid_entries: u32,
@@ -67,7 +68,6 @@ struct Light {
     intensity: vec3r,
 }
 
-// Spheres, lights, lists and the window are bound in many.wgsl, or in ranges.wgsl.
 @group(0) @binding(0) var<uniform> given_params: Params;
 
 // Set by each entry point that reads it: software devices load what is uniform once for all lanes, but lane by lane in a loop.

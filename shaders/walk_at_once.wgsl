@@ -1,4 +1,5 @@
 // One bounce of each path: what its ray meets, and its shading.
+// needs: effects, intersect, path, scene, secondary, stage, types
 
 @compute @workgroup_size(GROUP)
 fn walk_paths(@builtin(global_invocation_id) id: vec3<u32>) {

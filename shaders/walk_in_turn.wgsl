@@ -3,6 +3,7 @@
 // The lanes of a vector wait for the one with the longest walk, which among many spheres takes more than twice as long as the
 // others. So an invocation walks several paths, one after another, and begins the next while its neighbours are still on their
 // way.
+// needs: counters, distance, effects, grid, intersect, path, ray, real, scene, secondary, stage, tables, texels, types
 
 // For each path the sphere that its ray meets, which is below 2^24, and these bits.
 @group(0) @binding(22) var hits: WordTable;
@@ -10,9 +11,6 @@
 const HIT_FOUND: u32 = 1u << 31u;
 const HIT_INSIDE: u32 = 1u << 30u;
 const HIT_CUT: u32 = 1u << 29u;
-
-// Paths of an invocation.
-override PATHS: u32;
 
 // Turns between two looks whether a lane is free for its next path.
 const TURNS: u32 = 16u;

@@ -92,7 +92,7 @@ impl Renderer {
 
     /// The device in words; `None` for the reference.
     pub fn device(&self) -> Option<String> {
-        self.gpu.as_ref().map(|gpu| gpu.info.to_string())
+        self.gpu.as_ref().map(|gpu| gpu.device.info.to_string())
     }
 
     /// The picture of `scene`.

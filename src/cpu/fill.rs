@@ -1,4 +1,4 @@
-//! Pixels without a sample filled from those that have one; read it beside `shaders/flood.wgsl` and `shaders/fill_*.wgsl`. All
+//! Pixels without a sample filled from those that have one; read it beside `shaders/jump.wgsl` and `shaders/filled_*.wgsl`. All
 //! numbers are integers, so that device and reference give the same bytes.
 
 use rayon::prelude::*;

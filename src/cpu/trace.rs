@@ -1,5 +1,5 @@
-//! A pixel's colour: the primary ray and its chain of reflections; read it beside `shaders/stages.wgsl` and
-//! `shaders/paths.wgsl`.
+//! A pixel's colour: the primary ray and its chain of reflections; read it beside `shaders/see.wgsl` and
+//! `shaders/path_in_place.wgsl`.
 
 use super::intersect::{Primary, Ray, nearest_secondary, nearest_seen};
 use super::real::Real;

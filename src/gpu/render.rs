@@ -286,6 +286,11 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         self.inputs.specialisation.variant()
     }
 
+    /// What they are specialised for.
+    pub fn specialisation(&self) -> &Specialisation {
+        &self.inputs.specialisation
+    }
+
     /// Whether it tells pixels whose rays may touch a sphere or not.
     pub fn tells_tangents(&self) -> bool {
         self.inputs.specialisation.kernel.tells_tangents()

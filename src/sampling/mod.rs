@@ -2,7 +2,7 @@
 //!
 //! A [`Density`] says how many pixels are sampled at each place; a fixed order of the pixels decides which, so that a greater
 //! density only adds samples. A sampled pixel has the very value of the full picture. The others take that of their nearest
-//! sample, or a mean of samples around them: `src/cpu/fill.rs` and `shaders/flood.wgsl`, `shaders/fill_*.wgsl` do the same.
+//! sample, or a mean of samples around them: `src/cpu/fill.rs` and `shaders/jump.wgsl`, `shaders/filled_*.wgsl` do the same.
 
 mod density;
 mod order;

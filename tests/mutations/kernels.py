@@ -22,8 +22,8 @@ TREE = ROOT / "target" / "kernels" / "tree"
 TARGET = ROOT / "target" / "kernels" / "target"
 
 # Where the copy takes its shaders from.
-READ_WHEN_COMPILED = b'Cow::Borrowed(include_str!(concat!("../../../shaders/", $name)))'
-READ_WHEN_RUN = b'Cow::Owned(std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $name)).unwrap())'
+READ_WHEN_COMPILED = b'Cow::Borrowed(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $name, ".wgsl")))'
+READ_WHEN_RUN = b'Cow::Owned(std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $name, ".wgsl")).unwrap())'
 
 
 def parse(text):
@@ -65,7 +65,7 @@ def build():
     files = [path for name in ["Cargo.toml", "Cargo.lock", "src", "shaders"] for path in [ROOT / name, *(ROOT / name).rglob("*")]]
     for file in filter(Path.is_file, files):
         name, text = file.relative_to(ROOT), file.read_bytes()
-        if str(name) == "src/gpu/kernel/shader.rs":
+        if str(name) == "src/gpu/kernel/compose.rs":
             assert text.count(READ_WHEN_COMPILED) == 1, "shaders are read otherwise now"
             text = text.replace(READ_WHEN_COMPILED, READ_WHEN_RUN)
         put(TREE / name, text)

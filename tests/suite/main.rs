@@ -23,6 +23,7 @@ mod files;
 mod film;
 mod fuzz;
 mod golden;
+mod heads;
 mod keys;
 mod library;
 mod lists;

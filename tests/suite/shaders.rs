@@ -402,7 +402,7 @@ fn only_refraction_brings_its_text() {
         let (file, line) =
             with.place(with.text.lines().position(|line| line.contains("fn tree_color(")).unwrap() as u32 + 1);
         let text = std::fs::read_to_string(crate::support::root().join(&file)).unwrap();
-        assert_eq!(file, "shaders/trees.wgsl");
+        assert_eq!(file, "shaders/path_tree.wgsl");
         assert!(text.lines().nth(line as usize - 1).unwrap().contains("fn tree_color("));
     }
 }

@@ -63,7 +63,7 @@ pub(crate) fn small_buffer(device: &Device, contents: &[u8], usage: wgpu::Buffer
     buffer
 }
 
-/// Texels in a row of a texture that stands for a buffer: as `place_of_texel` of `shaders/tables.wgsl` has it.
+/// Texels in a row of a texture that stands for a buffer: as `place_of_texel` of `shaders/texels.wgsl` has it.
 pub(crate) const ROW: u32 = 4096;
 
 /// Greatest size of `contents` as such a texture, in bytes.

@@ -3,6 +3,7 @@
 pub(crate) mod ahead;
 pub mod cache;
 pub(crate) mod compiler;
+mod compose;
 mod inline;
 pub(crate) mod pipeline;
 mod products;

@@ -18,6 +18,10 @@ pub const WALK_PATHS: &str = "walk_paths";
 
 /// The entry point that shades what they have met, where several share an invocation.
 pub const SHADE_PATHS: &str = "shade_paths";
+/// The entry point that goes before each bounce of paths.
+pub const BEGIN_BOUNCE: &str = "begin_bounce";
+/// The entry point that makes pixels of samples.
+pub const RESOLVE: &str = "resolve";
 
 /// The kernels of a bounce of the paths.
 #[derive(Debug)]
@@ -81,17 +85,14 @@ pub(crate) fn compile(
     };
     let between = || {
         let module = parsed(&Module::between_stages())?;
-        let mut group = vec![("GROUP", f64::from(specialisation.workgroup))];
-        group.extend(constants.iter().filter(|(name, _)| *name == "PATHS"));
-        Stage::new(compiler, &module, "begin_bounce", &group, &[(12, ReadWrite), (16, ReadWrite)])
+        Stage::new(compiler, &module, BEGIN_BOUNCE, &constants, &[(12, ReadWrite), (16, ReadWrite)])
     };
     let resolve = || {
         if specialisation.samples == 1 {
             return Ok(None);
         }
         let module = parsed(&Module::resolve(specialisation.kernel))?;
-        let constants = [("SAMPLES", f64::from(specialisation.samples))];
-        Stage::new(compiler, &module, "resolve", &constants, &[(0, Uniform), (7, Read), (15, ReadWrite)]).map(Some)
+        Stage::new(compiler, &module, RESOLVE, &constants, &[(0, Uniform), (7, Read), (15, ReadWrite)]).map(Some)
     };
     let copies: &[(u32, Access)] =
         if specialisation.variant().copies() { &[(24, vectors), (25, vectors)] } else { &[] };

@@ -1,27 +1,12 @@
 //! The shader text: plain WGSL files, joined, with a map from the joined lines back to the files.
 
-use std::borrow::Cow;
 use std::fmt::Write as _;
 use std::num::NonZeroU32;
 
+use super::compose::{Part, compose};
 use crate::accel::Rounding;
 use crate::precision::Tier;
 use crate::sampling::Fill;
-
-/// One file of `shaders/`, or a line from the host.
-#[derive(Debug, Clone)]
-struct Part {
-    /// Name below `shaders/`.
-    pub name: &'static str,
-    /// Its text.
-    pub text: Cow<'static, str>,
-}
-
-macro_rules! part {
-    ($name:literal) => {
-        Part { name: $name, text: Cow::Borrowed(include_str!(concat!("../../../shaders/", $name))) }
-    };
-}
 
 /// What intersects rays with spheres: a tier, or what goes wrong without its care.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -144,61 +129,28 @@ pub struct Variant {
 }
 
 impl Variant {
+    /// For a kernel that renders no picture: with spheres in storage buffers, and whatever for the rest.
+    fn of_ranges(kernel: Kernel) -> Self {
+        Self {
+            kernel,
+            storage: Storage::Ranges,
+            places: Places::Large,
+            samples: false,
+            refraction: None,
+            slots: Slots::Tiles,
+            walk: Walk::InPlace,
+        }
+    }
+
+    /// Whether paths are kept from bounce to bounce.
+    pub fn keeps_paths(&self) -> bool {
+        self.refraction.is_none() && self.walk != Walk::InPlace
+    }
+
     /// Whether walks read copies of the spheres in the order of the grid's lists.
     pub fn copies(&self) -> bool {
         self.refraction.is_none() && matches!(self.walk, Walk::InTurn(_)) && !self.kernel.carries_low()
     }
-}
-
-/// The scalar of the kernel and what the host packs.
-fn data_parts(kernel: Kernel, storage: Storage) -> Vec<Part> {
-    let barrier = if kernel == Kernel::NoBarrier { part!("barrier_none.wgsl") } else { part!("barrier.wgsl") };
-    let mut parts =
-        vec![if kernel.is_double() { part!("real_f64.wgsl") } else { part!("real_f32.wgsl") }, part!("types.wgsl")];
-    match storage {
-        Storage::Tables(textures) => parts.extend([
-            match textures {
-                Textures::Stored => part!("tables_stored.wgsl"),
-                Textures::Sampled => part!("tables_sampled.wgsl"),
-            },
-            if kernel.is_double() { part!("vectors_f64.wgsl") } else { part!("vectors_f32.wgsl") },
-            part!("tables.wgsl"),
-            part!("many.wgsl"),
-        ]),
-        Storage::Ranges => parts.push(part!("ranges.wgsl")),
-    }
-    if !kernel.is_double() {
-        parts.push(barrier);
-    }
-    parts
-}
-
-/// The parts that intersect rays with spheres, in order.
-fn intersection_parts(kernel: Kernel, storage: Storage) -> Vec<Part> {
-    let mut parts = vec![part!("effects.wgsl")];
-    parts.extend(data_parts(kernel, storage));
-    let [real, pair] = [part!("distance_real.wgsl"), part!("distance_pair.wgsl")];
-    let [single_roots, pair_roots] = [part!("roots_single.wgsl"), part!("roots_pair.wgsl")];
-    let plain_ray = part!("ray_plain.wgsl");
-    let (eft, robust) = (part!("eft.wgsl"), part!("kernel_robust.wgsl"));
-    parts.extend(match kernel {
-        Kernel::Tier(Tier::Fast | Tier::Double) => vec![real, plain_ray, part!("kernel_plain.wgsl")],
-        Kernel::Tier(Tier::Robust) | Kernel::NoBarrier => vec![real, eft, single_roots, robust],
-        Kernel::Pairs => vec![eft, pair, pair_roots, robust],
-        Kernel::Schoolbook => vec![real, plain_ray, part!("kernel_schoolbook.wgsl")],
-    });
-    parts.push(part!("intersect.wgsl"));
-    parts.push(match storage {
-        Storage::Tables(_) => part!("lists.wgsl"),
-        Storage::Ranges => part!("every.wgsl"),
-    });
-    parts
-}
-
-/// The parts that refract rays, in order.
-fn refract_parts(kernel: Kernel) -> [Part; 2] {
-    let bent = if kernel.carries_low() { part!("refract_robust.wgsl") } else { part!("refract_plain.wgsl") };
-    [bent, part!("refract.wgsl")]
 }
 
 /// A composed module.
@@ -206,100 +158,65 @@ fn refract_parts(kernel: Kernel) -> [Part; 2] {
 pub struct Module {
     /// The joined text.
     pub text: String,
-    parts: Vec<Part>,
+    pub(super) parts: Vec<Part>,
 }
 
 impl Module {
     /// The module that renders like this.
     pub fn render(variant: &Variant) -> Self {
-        let Variant { kernel, storage, places, samples, refraction, slots, walk } = *variant;
-        let mut parts = intersection_parts(kernel, storage);
-        let bodies = if variant.copies() { part!("bodies_copied.wgsl") } else { part!("bodies_shared.wgsl") };
-        parts.extend(match places {
-            Places::Grid => vec![bodies, part!("grid.wgsl"), part!("secondary_grid.wgsl")],
-            Places::Large => vec![part!("secondary_large.wgsl")],
-            Places::Both => vec![bodies, part!("grid.wgsl"), part!("secondary_both.wgsl")],
-        });
-        parts.extend([part!("film.wgsl"), part!("quantize.wgsl")]);
-        parts.push(if samples { part!("film_samples.wgsl") } else { part!("film_pixels.wgsl") });
-        parts.extend([part!("shade.wgsl"), part!("reflect.wgsl")]);
-        if let Some(waiting) = refraction {
-            // Only workgroup arrays may take their size from a constant of the pipeline.
-            let text = format!("const MAX_WAITING: u32 = {waiting}u;\n").into();
-            parts.extend(refract_parts(kernel));
-            parts.extend([Part { name: "(the host)", text }, part!("trees.wgsl")]);
-        } else {
-            parts.extend(match walk {
-                Walk::InPlace => vec![part!("walk_in_place.wgsl")],
-                Walk::AtOnce => vec![part!("paths.wgsl"), part!("walk_at_once.wgsl")],
-                Walk::InTurn(_) => vec![part!("paths.wgsl"), part!("walk_in_turn.wgsl")],
-            });
-        }
-        parts.push(part!("stages.wgsl"));
-        parts.push(match slots {
-            Slots::Tiles => part!("slots_tiles.wgsl"),
-            Slots::List => part!("slots_list.wgsl"),
-        });
-        Self::join(parts)
+        let slots = if variant.keeps_paths() { &["slots", "walk"][..] } else { &["slots"] };
+        let files: Vec<_> = slots.iter().map(|slot| variant.file(slot)).collect();
+        Self::of(&files.iter().map(String::as_str).collect::<Vec<_>>(), variant)
     }
 
     /// The module that goes from one stage to the next.
     pub fn between_stages() -> Self {
-        Self::join(vec![part!("stage.wgsl")])
+        Self::of(&["bounce"], &Variant::of_ranges(Kernel::Tier(Tier::Fast)))
     }
 
     /// The module that makes pixels of samples.
     pub fn resolve(kernel: Kernel) -> Self {
-        let mut parts = vec![part!("effects.wgsl")];
-        parts.extend(data_parts(kernel, Storage::Ranges));
-        parts.extend([part!("quantize.wgsl"), part!("resolve.wgsl")]);
-        Self::join(parts)
+        Self::of(&["resolve"], &Variant::of_ranges(kernel))
     }
 
     /// The module that finds each pixel's nearest sample.
     pub fn flood() -> Self {
-        Self::join(vec![part!("flood.wgsl"), part!("flood_jump.wgsl")])
+        Self::of(&["jump"], &Variant::of_ranges(Kernel::Tier(Tier::Fast)))
     }
 
     /// The module that fills pixels without a sample.
     pub fn fill(fill: Fill) -> Self {
         let filled = match fill {
-            Fill::Nearest => part!("fill_nearest.wgsl"),
-            Fill::Smooth => part!("fill_smooth.wgsl"),
+            Fill::Nearest => "filled_nearest",
+            Fill::Smooth => "filled_smooth",
         };
-        Self::join(vec![part!("flood.wgsl"), part!("fill.wgsl"), filled])
+        Self::of(&[filled], &Variant::of_ranges(Kernel::Tier(Tier::Fast)))
     }
 
     /// The module that tries error-free transforms.
     pub fn selftest() -> Self {
-        Self::join(vec![
-            part!("real_f32.wgsl"),
-            part!("types.wgsl"),
-            part!("barrier.wgsl"),
-            part!("eft.wgsl"),
-            part!("selftest.wgsl"),
-        ])
+        Self::of(&["selftest"], &Variant::of_ranges(Kernel::Tier(Tier::Robust)))
     }
 
     /// The module that writes back what it reads.
     pub fn echo(kernel: Kernel, textures: Textures) -> Self {
-        let mut parts = data_parts(kernel, Storage::Tables(textures));
-        parts.push(part!("echo.wgsl"));
-        Self::join(parts)
+        Self::of(&["echo"], &Variant { storage: Storage::Tables(textures), ..Variant::of_ranges(kernel) })
     }
 
     /// The module that sends batches of rays through `kernel`.
     pub fn probe(kernel: Kernel) -> Self {
-        let mut parts = intersection_parts(kernel, Storage::Ranges);
-        parts.extend([part!("film.wgsl"), part!("shade.wgsl"), part!("reflect.wgsl")]);
-        parts.extend(refract_parts(kernel));
-        parts.push(part!("probe.wgsl"));
-        parts.push(if kernel.carries_low() { part!("probe_robust.wgsl") } else { part!("probe_plain.wgsl") });
-        Self::join(parts)
+        Self::of(&["probe"], &Variant::of_ranges(kernel))
     }
 
-    fn join(parts: Vec<Part>) -> Self {
+    /// These files with all that they need.
+    fn of(files: &[&str], variant: &Variant) -> Self {
+        let parts = compose(files, variant);
         Self { text: parts.iter().map(|part| part.text.as_ref()).collect(), parts }
+    }
+
+    /// The paths of its files in the project, in their order.
+    pub fn files(&self) -> impl Iterator<Item = String> {
+        self.parts.iter().map(Part::path)
     }
 
     /// The file and line, both as a person counts, of line `line` (from 1) of the joined text.
@@ -308,7 +225,7 @@ impl Module {
         for part in &self.parts {
             let lines = part.text.lines().count() as u32;
             if rest <= lines {
-                return (format!("shaders/{}", part.name), rest);
+                return (part.path(), rest);
             }
             rest -= lines;
         }

@@ -103,7 +103,7 @@ impl Specialisation {
         self.effects.has(Effect::Ellipsoids) || self.shared_surfaces
     }
 
-    /// Vectors that keep a path: as `shaders/paths.wgsl` has them.
+    /// Vectors that keep a path: as `shaders/path_kept.wgsl` has them.
     pub(crate) fn path_vectors(&self) -> u64 {
         4 + u64::from(self.kernel.carries_low())
     }
@@ -127,9 +127,11 @@ impl Specialisation {
         ];
         if self.keeps_paths() {
             constants.push(("VECTORS", self.path_vectors() as f64));
-            if let Walk::InTurn(paths) = self.walk {
-                constants.push(("PATHS", f64::from(paths.get())));
-            }
+            let paths = match self.walk {
+                Walk::InTurn(paths) => paths.get(),
+                Walk::InPlace | Walk::AtOnce => 1,
+            };
+            constants.push(("PATHS", f64::from(paths)));
         }
         if self.storage != Storage::Ranges {
             if self.places == Places::Large {
@@ -154,7 +156,7 @@ impl Specialisation {
 
     /// Whether paths are kept from bounce to bounce.
     pub(crate) fn keeps_paths(&self) -> bool {
-        self.refraction.is_none() && self.walk != Walk::InPlace
+        self.variant().keeps_paths()
     }
 
     /// Whether the loops of an invocation walk more than one bounce of one path.
@@ -168,7 +170,7 @@ impl Specialisation {
     }
 }
 
-/// Vectors of a material, as `shaders/many.wgsl` has it: all three, or all but the way out of object space.
+/// Vectors of a material, as `shaders/scene_tables.wgsl` has it: all three, or all but the way out of object space.
 pub(crate) fn material_vectors(effects: EffectSet) -> usize {
     if effects.has(Effect::Ellipsoids) { 3 } else { 2 }
 }

@@ -11,7 +11,7 @@ use crate::gpu::kernel::shader::{Slots, Walk};
 use crate::gpu::kernel::specialisation::Specialisation;
 use crate::gpu::kernel::stage::{Resource, Stage, table_usage};
 
-/// The counts of workgroups in `shaders/stage.wgsl`: their bytes, and where those of the kernel with one path an invocation and
+/// The counts of workgroups in `shaders/bounce.wgsl`: their bytes, and where those of the kernel with one path an invocation and
 /// of the one with several begin.
 pub(super) const WORKGROUPS_SIZE: u64 = 24;
 pub(super) const ONE_PATH: u64 = 0;
@@ -20,7 +20,7 @@ pub(super) const SEVERAL_PATHS: u64 = 12;
 /// Bytes of the shader's `Stage`.
 pub(super) const STAGE_SIZE: u64 = 8;
 
-/// Bytes of a slot's ray counts in `shaders/film.wgsl`.
+/// Bytes of a slot's ray counts in `shaders/counters.wgsl`.
 pub(super) const RAY_COUNT_SIZE: u64 = 8;
 
 /// The compiled kernels with their buffers.

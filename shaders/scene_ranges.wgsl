@@ -1,4 +1,5 @@
-// Spheres and lights of any number in storage buffers, of which each ray of a batch sees its own range; otherwise many.wgsl.
+// Spheres and lights of any number in storage buffers, of which each ray of a batch sees its own range.
+// needs: real, types
 
 @group(0) @binding(1) var<storage, read> shapes: array<Shape>;
 @group(0) @binding(2) var<storage, read> materials: array<Material>;

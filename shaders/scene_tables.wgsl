@@ -1,4 +1,5 @@
-// Spheres and lights of any number, and the lists that rays look through, in tables: see tables.wgsl.
+// Spheres and lights of any number, and the lists that rays look through, in tables: see texels.wgsl.
+// needs: real, tables, texels, types, vectors
 
 // The first half of each shape, which every test reads, and the second.
 @group(0) @binding(1) var shapes: Table;

@@ -1,4 +1,5 @@
-// Where the result of a sample goes.
+// What is noted of a sample while it is calculated.
+// needs: effects
 
 // Samples of this dispatch, tile by tile, pixel by pixel, have a slot each.
 // With COUNT_RAYS, the shadow rays and the reflection rays of each slot: no sample lives to cast 2^32 of them.

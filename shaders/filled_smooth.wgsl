@@ -1,6 +1,7 @@
 // By the mean of the nearest sample and those that the eight pixels around at its distance have for their nearest, each weighted
 // with one over the square of its distance (D. Shepard, "A two-dimensional interpolation function for irregularly-spaced
 // data", 1968).
+// needs: fill, flood
 
 // Weight of a sample at distance 1, so that nine weighted levels fit into 32 bits.
 const UNIT_WEIGHT: u32 = 65536u;

@@ -1,4 +1,6 @@
-// Spheres in the lists of the grid: copies beside each other, since among many spheres memory is what a walk waits for.
+// The sphere of an entry of the grid's lists: copies lie beside each other, since among many spheres memory is what a
+// walk waits for.
+// needs: body, real, scene, tables, texels, types, vectors
 
 // The first halves of the shapes, and the second, entry by entry.
 @group(0) @binding(24) var grid_shapes: Table;

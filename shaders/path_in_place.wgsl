@@ -2,6 +2,7 @@
 //
 // Whoever casts the primary ray follows the mirrored ones too. Lanes wait for the longest path among them, but no path has to be
 // kept, and where nothing is hit there is nothing to shade.
+// needs: counters, distance, effects, film, intersect, ray, real, reflect, scene, secondary, shade, types
 
 fn follow(primary: Ray, seen: Hit, slot: u32) {
     var ray = primary;

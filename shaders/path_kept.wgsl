@@ -1,7 +1,8 @@
-// A sample's way from bounce to bounce; read it beside src/cpu/trace.rs.
+// A sample's way from bounce to bounce, by the kernels of walk_*.wgsl; read it beside src/cpu/trace.rs.
+// needs: counters, effects, film, intersect, ray, real, reflect, scene, shade, stage, tables, texels, types, vectors
 
 // Paths are samples' reflection rays and what they have gathered so far: those of this bounce, and those of the next. In textures:
-// see tables.wgsl. Each path has VECTORS vectors:
+// see texels.wgsl. Each path has VECTORS vectors:
 //   the start of its ray, and the throughput;
 //   the direction, and the index of the sample's result, which is below 2^24;
 //   the colour gathered, and the shape index, below 2^24, of the sphere that the ray leaves;

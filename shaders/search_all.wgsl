@@ -1,4 +1,5 @@
 // The nearest hit and any hit among all spheres of first_sphere() and sphere_count().
+// needs: body, distance, intersect, ray, scene, types
 
 // The nearest intersection in the range; of equal ones the lowest index.
 fn nearest_hit(ray: Ray, own: Own, within: Range) -> Hit {

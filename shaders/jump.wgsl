@@ -1,4 +1,5 @@
 // One jump: each pixel asks those around.
+// needs: flood
 
 @group(0) @binding(2) var<storage, read_write> next_owners: array<u32>;
 

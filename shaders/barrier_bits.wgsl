@@ -1,4 +1,5 @@
 // What no compiler sees through: numbers keep the bits that the operation before gave them.
+// needs: types
 
 // x, through bits that no compiler knows.
 fn barrier(x: f32) -> f32 {

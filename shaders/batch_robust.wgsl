@@ -1,4 +1,5 @@
 // Rays of a batch with what rounding took from them.
+// needs: eft, probe, ray, real, types
 
 @group(0) @binding(14) var<storage, read> probe_low: array<real>;
 

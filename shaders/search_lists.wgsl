@@ -1,4 +1,5 @@
 // The nearest hit and any hit among those spheres that a ray can meet; read it beside src/accel and src/cpu/intersect.rs.
+// needs: body, counters, distance, effects, intersect, kernel, ray, real, scene, tables, types, vectors
 
 // One side of the cube of directions around a light: as in src/accel/light_buffer.rs.
 struct Face {

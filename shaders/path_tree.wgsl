@@ -1,5 +1,7 @@
-// In place of paths.wgsl where something refracts: from the hit of a primary ray on, its tree of reflections and refractions;
-// read it beside src/cpu/trace_refraction.rs. The host puts before it how many rays can wait: const MAX_WAITING.
+// Where something refracts: from the hit of a primary ray on, its tree of reflections and refractions, in which MAX_WAITING rays
+// can wait; read it beside src/cpu/trace_refraction.rs.
+// needs: counters, effects, film, intersect, ray, real, reflect, refract, scene, secondary, shade, types
+// host: MAX_WAITING
 
 // A refraction ray that waits until the reflected ray beside it has been followed to its end.
 struct Waiting {
