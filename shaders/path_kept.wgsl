@@ -1,16 +1,14 @@
 // A sample's way from bounce to bounce, by the kernels of walk_*.wgsl; read it beside src/cpu/trace.rs.
-// needs: counters, effects, film, intersect, ray, real, reflect, scene, shade, stage, tables, texels, types, vectors
+// needs: counters, effects, film, intersect, ray, real, reflect, scene, shade, stage, tables, types
 
-// Paths are samples' reflection rays and what they have gathered so far: those of this bounce, and those of the next. In textures:
-// see texels.wgsl. Each path has VECTORS vectors:
+// Paths are samples' reflection rays and what they have gathered so far: those of this bounce, and those of the next.
+// Each path has VECTORS vectors:
 //   the start of its ray, and the throughput;
 //   the direction, and the index of the sample's result, which is below 2^24;
 //   the colour gathered, and the shape index, below 2^24, of the sphere that the ray leaves;
 //   the start in the object space of that sphere, and 1 where it is on the inner wall;
 //   for the tiers that carry it, what rounding took from the start.
-@group(0) @binding(11) var paths: Table;
-@group(0) @binding(18) var next_paths: texture_storage_2d<rgba32uint, write>;
-
+//
 // Vectors of a path: as path_vectors in src/gpu/pipeline.rs has it.
 override VECTORS: u32;
 
@@ -28,23 +26,16 @@ struct Path {
 // A path of this bounce.
 fn path_of(index: u32) -> Path {
     let at = index * VECTORS;
-    let start = vector_at(paths, at);
-    let way = vector_at(paths, at + 1u);
-    let gathered = vector_at(paths, at + 2u);
-    let local = vector_at(paths, at + 3u);
+    let start = path_at(at);
+    let way = path_at(at + 1u);
+    let gathered = path_at(at + 2u);
+    let local = path_at(at + 3u);
     let own = Own(u32(gathered.w), local.w != real(0.0), local.xyz);
     var low = vec3r();
     if CARRIES_LOW {
-        low = vector_at(paths, at + VECTORS - 1u).xyz;
+        low = path_at(at + VECTORS - 1u).xyz;
     }
     return Path(ray_from(point_from(start.xyz, low), way.xyz), own, u32(way.w), gathered.xyz, start.w);
-}
-
-// Keeps a vector of a path of the next bounce.
-fn keep(index: u32, v: vec4r) {
-    for (var part = 0u; part < TEXELS; part++) {
-        textureStore(next_paths, place_of_texel(index * TEXELS + part), texel_of(v, part));
-    }
 }
 
 // The path goes on along the mirrored ray.
@@ -54,12 +45,12 @@ fn reflect(surface: Surface, color: vec3r, throughput: real, slot: u32) {
     }
     let ray = reflection_ray(surface);
     let at = atomicAdd(&stage.next_path_count, 1u) * VECTORS;
-    keep(at, vec4r(high_of(ray.origin), throughput));
-    keep(at + 1u, vec4r(direction_of(ray), real(slot)));
-    keep(at + 2u, vec4r(color, real(surface.own.shape)));
-    keep(at + 3u, vec4r(surface.own.local, select(real(0.0), real(1.0), surface.own.inside)));
+    keep_path(at, vec4r(high_of(ray.origin), throughput));
+    keep_path(at + 1u, vec4r(direction_of(ray), real(slot)));
+    keep_path(at + 2u, vec4r(color, real(surface.own.shape)));
+    keep_path(at + 3u, vec4r(surface.own.local, select(real(0.0), real(1.0), surface.own.inside)));
     if CARRIES_LOW {
-        keep(at + VECTORS - 1u, vec4r(low_of(ray.origin), real(0.0)));
+        keep_path(at + VECTORS - 1u, vec4r(low_of(ray.origin), real(0.0)));
     }
 }
 

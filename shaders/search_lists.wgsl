@@ -1,28 +1,5 @@
 // The nearest hit and any hit among those spheres that a ray can meet; read it beside src/accel and src/cpu/intersect.rs.
-// needs: body, counters, distance, effects, intersect, kernel, ray, real, scene, tables, types, vectors
-
-// One side of the cube of directions around a light: as in src/accel/light_buffer.rs.
-struct Face {
-    // Least u and v of any sphere.
-    low: vec2r,
-    // Cells per unit of u and v.
-    per_unit: real,
-    // Number of cells along u and v.
-    @align(16) cells: vec2<u32>,
-    // Where in `cells` those of the face begin.
-    first: u32,
-}
-
-// Six of each light.
-@group(0) @binding(14) var faces: Table;
-
-fn face_of(index: u32) -> Face {
-    // A vector, and a texel of words.
-    let at = index * (TEXELS + 1u);
-    let place = vector_from(faces, at);
-    let words = texel_at(faces, at + TEXELS);
-    return Face(place.xy, place.z, words.xy, words.z);
-}
+// needs: body, counters, distance, effects, intersect, kernel, ray, real, scene, tables, types
 
 // Radii that a sphere reaches towards a light, rounding included: REACH in src/accel/light_buffer.rs.
 const REACH: real = real(1.01);

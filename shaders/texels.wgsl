@@ -1,6 +1,5 @@
-// Numbers in textures, bit for bit what buffers would hold: software devices load from a texture for all lanes at once, from a
-// storage buffer lane by lane. Their types are in tables_*.wgsl, their numbers in vectors_*.wgsl.
-// needs: real, tables, vectors
+// Numbers in the texels of textures.
+// needs: real, texture, vectors
 
 // The place of a texel; rows have 2^12: ROW in src/gpu/upload.rs.
 fn place_of_texel(index: u32) -> vec2<u32> {

@@ -63,6 +63,24 @@ struct Material {
     scale: vec3r,
 }
 
+// The second half of a shape in a table of its own, which spheres that are no ellipsoids and share no surface do without.
+struct ShapeEnd {
+    inv_scale: vec3r,
+    index: u32,
+}
+
+// One side of the cube of directions around a light: as in src/accel/light_buffer.rs.
+struct Face {
+    // Least u and v of any sphere.
+    low: vec2r,
+    // Cells per unit of u and v.
+    per_unit: real,
+    // Number of cells along u and v.
+    @align(16) cells: vec2<u32>,
+    // Where in `cells` those of the face begin.
+    first: u32,
+}
+
 struct Light {
     position: vec3r,
     intensity: vec3r,

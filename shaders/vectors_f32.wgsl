@@ -1,5 +1,5 @@
 // Vectors of four f32 in tables, and their bits.
-// needs: real, tables
+// needs: real, texture
 
 // The vector of four numbers that begins with this texel.
 fn vector_from(table: Table, first: u32) -> vec4r {

@@ -1,5 +1,5 @@
 // Vectors of four f64 in tables of u32, and their bits.
-// needs: real, tables
+// needs: real, texture
 
 fn double_from(low: u32, high: u32) -> f64 {
     return bitcast<f64>(u64(low) | (u64(high) << 32u));

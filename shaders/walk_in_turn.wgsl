@@ -3,11 +3,9 @@
 // The lanes of a vector wait for the one with the longest walk, which among many spheres takes more than twice as long as the
 // others. So an invocation walks several paths, one after another, and begins the next while its neighbours are still on their
 // way.
-// needs: counters, distance, effects, grid, intersect, path, ray, real, scene, secondary, stage, tables, texels, types
+// needs: counters, distance, effects, grid, intersect, path, ray, real, scene, secondary, stage, tables, types
 
 // For each path the sphere that its ray meets, which is below 2^24, and these bits.
-@group(0) @binding(22) var hits: WordTable;
-@group(0) @binding(23) var kept_hits: texture_storage_2d<r32uint, write>;
 const HIT_FOUND: u32 = 1u << 31u;
 const HIT_INSIDE: u32 = 1u << 30u;
 const HIT_CUT: u32 = 1u << 29u;
@@ -41,7 +39,7 @@ fn walk_paths(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation
             if current < end {
                 let bits = select(0u, HIT_FOUND, nearest.found) | select(0u, HIT_INSIDE, nearest.inside);
                 let word = nearest.sphere | bits | select(0u, HIT_CUT, walk.goes_on);
-                textureStore(kept_hits, place_of_texel(current), vec4<u32>(word));
+                keep_hit(current, word);
             }
             let path = path_of(min(next, end - 1u));
             ray = path.ray;
@@ -77,7 +75,7 @@ fn shade_paths(@builtin(global_invocation_id) id: vec3<u32>) {
     let is_path = id.x < count;
     let index = min(id.x, count - 1u);
     let path = path_of(index);
-    let word = word_at(hits, index);
+    let word = hit_at(index);
     is_cut |= (word & HIT_CUT) != 0u;
     let hit = Hit(is_path & ((word & HIT_FOUND) != 0u), distance_of(FAR), word & 0xffffffu, (word & HIT_INSIDE) != 0u);
     shade(path.ray, hit, is_path, path.slot, path.color, path.throughput);

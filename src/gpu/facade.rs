@@ -9,9 +9,9 @@ use super::device::open::Device;
 use super::kernel::ahead::{Ahead, SOFTWARE_LADDER};
 use super::kernel::compiler::Compiler;
 use super::kernel::pipeline::Stages;
-use super::kernel::shader::Textures;
+use super::kernel::shader::Tables;
 use super::kernel::specialisation::Specialisation;
-use super::kernel::stage::MAX_TEXTURES;
+use super::kernel::stage::{MAX_BUFFERS, MAX_TABLES};
 use super::kernel::store::KernelStore;
 use super::tuned::DeviceTuning;
 use crate::misuse::Misuse;
@@ -32,7 +32,11 @@ impl Gpu {
     ///
     /// `WGPU_ADAPTER_NAME` and `WGPU_POWER_PREF` decide where the choice leaves it open.
     pub fn open(choice: &Choice) -> Result<Self, Error> {
-        let device = Device::open(choice)?;
+        Self::with(Device::open(choice)?)
+    }
+
+    /// With a device that is open.
+    pub fn with(device: Device) -> Result<Self, Error> {
         let tuned = DeviceTuning::of(&device.info);
         let kernels = device.guarded(|| Ok(KernelStore::open(&device)))?;
         Ok(Self { device, tuned, kernels })
@@ -43,12 +47,15 @@ impl Gpu {
         self.kernels.note()
     }
 
-    /// How kernels read the textures that hold a scene.
-    pub(crate) fn textures(&self) -> Textures {
-        if self.tuned.tuning.stored_tables && self.device.info.max_storage_textures >= MAX_TEXTURES {
-            Textures::Stored
+    /// What holds the tables of a scene: storage buffers unless textures are faster, or there are too few.
+    pub fn tables(&self) -> Tables {
+        let info = &self.device.info;
+        if !self.tuned.tuning.texture_tables && info.max_storage_buffers >= MAX_TABLES + MAX_BUFFERS {
+            Tables::Buffers
+        } else if info.max_storage_textures >= MAX_TABLES {
+            Tables::Stored
         } else {
-            Textures::Sampled
+            Tables::Sampled
         }
     }
 

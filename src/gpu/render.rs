@@ -205,17 +205,17 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         if let Some(why) = limits::problem_in(scalar, scene, effects) {
             return Err(Error::OutOfRange { kernel: kernel.name(), why });
         }
-        let (tuning, textures) = (&gpu.tuned().tuning, gpu.textures());
+        let (tuning, tables) = (&gpu.tuned().tuning, gpu.tables());
         let specialisation = Specialisation {
             slots: O::SLOTS,
             count_rays: options.count_rays,
-            ..Specialisation::new(scene, settings, effects, kernel, tuning, textures)
+            ..Specialisation::new(scene, settings, effects, kernel, tuning, tables)
         };
         let camera = Camera::new(scene, settings);
         let lists = |density| Acceleration::with_density(scene, &camera, specialisation.effects, rounding, density);
         let mut accel = lists(&tuning.density);
         // Finer lists than are needed must not keep a scene from fitting.
-        if tuning.density != Density::LEAST && are_too_large(&gpu.device, &list_contents(&accel)) {
+        if tuning.density != Density::LEAST && are_too_large(&gpu.device, tables, &list_contents(&accel)) {
             accel = lists(&Density::LEAST);
         }
         let mut specialisation = specialisation.with_grid(accel.grid.as_ref(), tuning);
@@ -230,20 +230,20 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         };
         specialisation.shared_surfaces = indices.is_some();
         let packed = Packed::new(scene, settings, effects, kernel, &accel, indices, tangent_margin);
-        if specialisation.variant().copies() && !copies_fit(&gpu.device, &packed, &accel) {
+        if specialisation.variant().copies() && !copies_fit(&gpu.device, tables, &packed, &accel) {
             specialisation.walk = Walk::AtOnce;
         }
         let list_tables = list_contents(&accel);
-        check_fits(&gpu.device, &packed, &list_tables)?;
+        check_fits(&gpu.device, tables, &packed, &list_tables)?;
         let cover = accel.screen.cover();
         let picture_tiles = u64::from(scene.width.div_ceil(TILE)) * u64::from(scene.height.div_ceil(TILE));
         let covered_tiles = picture_tiles.min(cover.most());
         // Lists that nobody wants any more go before the spheres take memory on the device.
-        let mut resources = list_resources(&gpu.device, textures, &list_tables)?;
-        resources.extend(copy_resources(&gpu.device, textures, &packed, &accel, &specialisation)?);
+        let mut resources = list_resources(&gpu.device, tables, &list_tables)?;
+        resources.extend(copy_resources(&gpu.device, tables, &packed, &accel, &specialisation)?);
         drop(list_tables);
         let kept = keep(accel);
-        resources.extend(scene_resources(&gpu.device, textures, &packed, &specialisation)?);
+        resources.extend(scene_resources(&gpu.device, tables, &packed, &specialisation)?);
         let samples = u64::from(settings.samples * settings.samples);
         let tests_per_pixel = samples
             * (scene.spheres.len().min(64) as u64 + 1)

@@ -48,11 +48,11 @@ pub static KNOBS: [Knob; 13] = [
         set: |tuning, value| tuning.paths = value as u32,
     },
     Knob {
-        name: "stored_tables",
+        name: "texture_tables",
         limits: [0.0, 1.0],
         candidates: &[0.0, 1.0],
-        get: |tuning| f64::from(u8::from(tuning.stored_tables)),
-        set: |tuning, value| tuning.stored_tables = value >= 0.5,
+        get: |tuning| f64::from(u8::from(tuning.texture_tables)),
+        set: |tuning, value| tuning.texture_tables = value >= 0.5,
     },
     Knob {
         name: "longest_tile",

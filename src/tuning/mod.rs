@@ -22,8 +22,8 @@ pub struct Tuning {
     pub in_place_below: f64,
     /// Entries of the grid's lists from which on there are many.
     pub in_turn_from: f64,
-    /// Whether kernels read a scene from storage textures instead of sampled ones, where the device has as many as they need.
-    pub stored_tables: bool,
+    /// Whether kernels read a scene from textures instead of storage buffers.
+    pub texture_tables: bool,
     /// How fine the lists of spheres are.
     pub density: Density,
     /// Memory for the paths of a dispatch at the most, in MiB.
@@ -73,8 +73,8 @@ impl Tuning {
             paths: 32,
             in_place_below: 1e4,
             in_turn_from: 1e4,
-            // lavapipe takes three quarters of the time of sampled ones.
-            stored_tables: true,
+            // TODO figures
+            texture_tables: true,
             density: Density::DEFAULT,
             // All of it is set to 0 before the first dispatch, which takes lavapipe some 20 ms for as much more.
             path_mib: 32,
@@ -90,9 +90,9 @@ impl Tuning {
             dispatch_ms: INTERACTIVE_MS,
             in_place_below: 0.0,
             in_turn_from: NEVER,
+            texture_tables: false,
             ..software
         };
-        // Storage textures and sampled ones take the same time there, too.
         match class {
             Class::Software => software,
             Class::Integrated => Self { first_dispatch_tests: 16e6, ..hardware },

@@ -76,6 +76,14 @@ struct Subject {
     settings: Settings,
 }
 
+/// All expected pictures: their names, scenes and conventions.
+pub(crate) fn all_subjects() -> impl Iterator<Item = (String, Scene, Settings)> {
+    LISTED.iter().flat_map(|test| subjects(test)).map(|(name, settings)| {
+        let Subject { name, scene, settings } = Subject::new(name, settings);
+        (name, scene, settings)
+    })
+}
+
 /// The names of a scene's expected pictures and their conventions; of the test of this name, which has no hyphens.
 fn subjects(test: &str) -> Vec<(String, Settings)> {
     let name = test.replace('_', "-");

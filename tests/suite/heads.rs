@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use trueray::gpu::{Kernel, Module, Places, Slots, Storage, Textures, Variant, Walk};
+use trueray::gpu::{Kernel, Module, Places, Slots, Storage, Tables, Variant, Walk};
 use trueray::precision::Tier;
 use trueray::sampling::Fill;
 
@@ -116,14 +116,14 @@ fn modules() -> Vec<Module> {
     let kernels = Tier::ALL.map(Kernel::Tier).into_iter().chain([Kernel::Pairs, Kernel::Schoolbook, Kernel::NoBarrier]);
     let kernels: Vec<_> = kernels.collect();
     let ways = [
-        (Places::Grid, Textures::Stored, Slots::Tiles, Walk::InPlace, None),
-        (Places::Large, Textures::Sampled, Slots::List, Walk::AtOnce, None),
-        (Places::Both, Textures::Stored, Slots::Tiles, in_turn, None),
-        (Places::Both, Textures::Stored, Slots::Tiles, Walk::AtOnce, Some(std::num::NonZeroU32::MIN)),
+        (Places::Grid, Tables::Stored, Slots::Tiles, Walk::InPlace, None),
+        (Places::Large, Tables::Sampled, Slots::List, Walk::AtOnce, None),
+        (Places::Both, Tables::Stored, Slots::Tiles, in_turn, None),
+        (Places::Both, Tables::Stored, Slots::Tiles, Walk::AtOnce, Some(std::num::NonZeroU32::MIN)),
     ];
     let pictures = kernels.iter().flat_map(|&kernel| {
-        ways.map(|(places, textures, slots, walk, refraction)| {
-            let (storage, samples) = (Storage::Tables(textures), slots == Slots::List);
+        ways.map(|(places, tables, slots, walk, refraction)| {
+            let (storage, samples) = (Storage::Tables(tables), slots == Slots::List);
             Module::render(&Variant { kernel, storage, places, samples, refraction, slots, walk })
         })
     });
@@ -131,7 +131,7 @@ fn modules() -> Vec<Module> {
     let others = others.into_iter().chain(Fill::ALL.map(Module::fill));
     let each = kernels
         .iter()
-        .flat_map(|&kernel| [Module::probe(kernel), Module::resolve(kernel), Module::echo(kernel, Textures::Stored)]);
+        .flat_map(|&kernel| [Module::probe(kernel), Module::resolve(kernel), Module::echo(kernel, Tables::Stored)]);
     pictures.chain(others).chain(each).collect()
 }
 

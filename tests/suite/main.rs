@@ -28,6 +28,7 @@ mod keys;
 mod library;
 mod lists;
 mod magnitudes;
+mod masked;
 mod messages;
 mod misuse;
 mod oracle;

@@ -9,7 +9,7 @@ use trueray::effects::{Effect, EffectSet, Effects, Request};
 use trueray::gpu::layout::{double, single};
 use trueray::gpu::{
     Kernel, Module, Parsed, Places, SEE_SAMPLES, SEE_TILES, SHADE_PATHS, SelfTest, Slots, Specialisation, Storage,
-    Textures, Variant, WALK_PATHS, Walk, echo_layout,
+    Tables, Variant, WALK_PATHS, Walk, echo_layout,
 };
 
 use trueray::precision::Tier;
@@ -25,18 +25,18 @@ fn kinds() -> impl Iterator<Item = Variant> {
     let kernels = Tier::ALL.map(Kernel::Tier).into_iter().chain([Kernel::Pairs]);
     let in_turn = Walk::InTurn(NonZeroU32::new(5).unwrap());
     let ways = [
-        (Places::Grid, Textures::Stored, in_turn),
-        (Places::Grid, Textures::Sampled, Walk::AtOnce),
-        (Places::Grid, Textures::Stored, Walk::InPlace),
+        (Places::Grid, Tables::Stored, in_turn),
+        (Places::Grid, Tables::Sampled, Walk::AtOnce),
+        (Places::Grid, Tables::Stored, Walk::InPlace),
         // Where no sphere is in the grid, there is nothing to walk through in turn.
-        (Places::Large, Textures::Stored, Walk::AtOnce),
-        (Places::Large, Textures::Sampled, Walk::InPlace),
-        (Places::Both, Textures::Sampled, in_turn),
+        (Places::Large, Tables::Stored, Walk::AtOnce),
+        (Places::Large, Tables::Sampled, Walk::InPlace),
+        (Places::Both, Tables::Sampled, in_turn),
     ];
     kernels.flat_map(move |kernel| {
-        ways.map(|(places, textures, walk)| Variant {
+        ways.map(|(places, tables, walk)| Variant {
             kernel,
-            storage: Storage::Tables(textures),
+            storage: Storage::Tables(tables),
             places,
             samples: false,
             refraction: None,
@@ -172,7 +172,7 @@ fn other_kernels() -> impl Iterator<Item = (String, dr::Module)> {
     let tiers = Tier::ALL.map(Kernel::Tier);
     let all = tiers.into_iter().chain([Kernel::Pairs, Kernel::Schoolbook, Kernel::NoBarrier]);
     let probes = all.map(Module::probe);
-    let echoes = tiers.map(|kernel| Module::echo(kernel, Textures::Stored));
+    let echoes = tiers.map(|kernel| Module::echo(kernel, Tables::Stored));
     let modules = probes.chain(echoes).chain(tiers.map(Module::resolve)).chain(Fill::ALL.map(Module::fill));
     let modules = modules.chain([Module::selftest(), Module::flood(), Module::between_stages()]);
     modules.flat_map(|module| {

@@ -24,7 +24,7 @@ fn tunings() -> [Tuning; 5] {
         tuning
     });
     let density = Density { grid_cells: 0.3, light_entries: 1.0, ..class.density };
-    let in_turn = Tuning { paths: 256, in_place_below: 0.0, in_turn_from: 0.0, stored_tables: false, ..class };
+    let in_turn = Tuning { paths: 256, in_place_below: 0.0, in_turn_from: 0.0, texture_tables: false, ..class };
     let at_once = Tuning { workgroup: 256, in_place_below: 0.0, in_turn_from: 1e9, ..class };
     [ends[0], ends[1], Tuning { workgroup: 48, density, ..at_once }, in_turn, at_once]
 }

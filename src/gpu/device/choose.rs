@@ -7,6 +7,7 @@ use super::drivers::is_device_chosen;
 use super::error::Error;
 use super::guard::guarded;
 use super::info::DeviceInfo;
+use super::mask::Offer;
 
 /// Which device renders.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -68,7 +69,7 @@ fn adapters() -> Result<(wgpu::Instance, Adapters), Error> {
     });
     let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::VULKAN));
     let adapters =
-        adapters.into_iter().enumerate().map(|(i, adapter)| (DeviceInfo::new(i, &adapter), adapter)).collect();
+        adapters.into_iter().enumerate().map(|(i, adapter)| (DeviceInfo::new(i, adapter.get_info(), &Offer::of(&adapter)), adapter)).collect();
     Ok((instance, adapters))
 }
 

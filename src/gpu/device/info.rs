@@ -1,5 +1,6 @@
 //! What is known of a device before it is opened.
 
+use super::mask::Offer;
 use std::fmt;
 
 use serde::Serialize;
@@ -79,25 +80,26 @@ pub struct DeviceInfo {
     pub max_workgroups: u32,
     /// Greatest number of invocations of a workgroup.
     pub max_invocations: u32,
+    /// Greatest number of storage buffers that a kernel reads and writes.
+    pub max_storage_buffers: u32,
     /// Greatest number of storage textures that a kernel reads and writes.
     pub max_storage_textures: u32,
 }
 
 impl DeviceInfo {
-    pub(super) fn new(index: usize, adapter: &wgpu::Adapter) -> Self {
-        let info = adapter.get_info();
-        let limits = adapter.limits();
+    pub(super) fn new(index: usize, info: wgpu::AdapterInfo, Offer { features, limits }: &Offer) -> Self {
         Self {
             index,
             name: info.name,
             kind: DeviceKind::of(info.device_type),
             driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
             pci: info.device_pci_bus_id,
-            f64: adapter.features().contains(wgpu::Features::SHADER_F64 | wgpu::Features::SHADER_INT64),
+            f64: features.contains(wgpu::Features::SHADER_F64 | wgpu::Features::SHADER_INT64),
             max_storage_binding: limits.max_storage_buffer_binding_size,
             max_buffer: limits.max_buffer_size,
             max_workgroups: limits.max_compute_workgroups_per_dimension,
             max_invocations: limits.max_compute_invocations_per_workgroup,
+            max_storage_buffers: limits.max_storage_buffers_per_shader_stage,
             max_storage_textures: limits.max_storage_textures_per_shader_stage,
         }
     }

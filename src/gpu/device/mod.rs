@@ -8,6 +8,7 @@ pub mod drivers;
 pub(crate) mod error;
 mod guard;
 pub(crate) mod info;
+pub(crate) mod mask;
 pub(crate) mod open;
 pub(crate) mod readable;
 pub(crate) mod timestamps;

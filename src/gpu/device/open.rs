@@ -8,6 +8,7 @@ use super::choose::{Choice, chosen};
 use super::error::Error;
 use super::guard::guarded;
 use super::info::{DeviceInfo, DeviceKind};
+use super::mask::{Mask, Offer};
 
 /// An open device.
 #[derive(Debug)]
@@ -18,6 +19,8 @@ pub struct Device {
     pub(crate) queue: wgpu::Queue,
     /// Whether host and device share memory, so that a storage buffer can be mapped.
     pub(crate) mappable: bool,
+    /// Whether it takes SPIR-V, which alone says how to round.
+    pub(crate) takes_spirv: bool,
     failure: Arc<Mutex<Option<Failure>>>,
     /// Why nothing can be asked of it any more.
     end: OnceLock<String>,
@@ -53,12 +56,19 @@ impl Device {
     ///
     /// `WGPU_ADAPTER_NAME` and `WGPU_POWER_PREF` decide where the choice leaves it open.
     pub fn open(choice: &Choice) -> Result<Self, Error> {
-        let (info, adapter) = chosen(choice)?;
-        let opened = info.clone();
-        guarded(|| Self::open_adapter(opened, &adapter)).unwrap_or_else(|why| Err(does_not_open(&info, &why)))
+        Self::masked(choice, &Mask::default())
     }
 
-    fn open_adapter(info: DeviceInfo, adapter: &wgpu::Adapter) -> Result<Self, Error> {
+    /// The same, taken to offer less than it does.
+    pub fn masked(choice: &Choice, mask: &Mask) -> Result<Self, Error> {
+        let (info, adapter) = chosen(choice)?;
+        let offer = Offer::of(&adapter).masked(mask);
+        let info = DeviceInfo::new(info.index, adapter.get_info(), &offer);
+        let opened = info.clone();
+        guarded(|| Self::open_adapter(opened, &adapter, offer)).unwrap_or_else(|why| Err(does_not_open(&info, &why)))
+    }
+
+    fn open_adapter(info: DeviceInfo, adapter: &wgpu::Adapter, offer: Offer) -> Result<Self, Error> {
         let shares_memory = matches!(info.kind, DeviceKind::Software | DeviceKind::Integrated);
         let mut features = wgpu::Features::SHADER_F64
             | wgpu::Features::SHADER_INT64
@@ -68,11 +78,8 @@ impl Device {
         if shares_memory {
             features |= wgpu::Features::MAPPABLE_PRIMARY_BUFFERS;
         }
-        let features = features & adapter.features();
-        if !features.contains(wgpu::Features::PASSTHROUGH_SHADERS) {
-            return Err(Error::unsuitable(&info, "it takes no SPIR-V, which alone says how to round"));
-        }
-        let uniform = adapter.limits().max_uniform_buffer_binding_size;
+        let features = features & offer.features;
+        let uniform = offer.limits.max_uniform_buffer_binding_size;
         if uniform < LEAST_UNIFORM {
             let limit = "max_uniform_buffer_binding_size (Vulkan's maxUniformBufferRange)";
             return Err(Error::unsuitable(
@@ -83,7 +90,7 @@ impl Device {
         let request = adapter.request_device(&wgpu::DeviceDescriptor {
             label: None,
             required_features: features,
-            required_limits: adapter.limits(),
+            required_limits: offer.limits,
             memory_hints: wgpu::MemoryHints::MemoryUsage,
             ..wgpu::DeviceDescriptor::default()
         });
@@ -95,7 +102,8 @@ impl Device {
         let slot = Arc::clone(&failure);
         device.set_device_lost_callback(move |_, message| note(&slot, Failure::Broken(message)));
         let mappable = features.contains(wgpu::Features::MAPPABLE_PRIMARY_BUFFERS);
-        Ok(Self { info, raw: device, queue, mappable, failure, end: OnceLock::new() })
+        let takes_spirv = features.contains(wgpu::Features::PASSTHROUGH_SHADERS);
+        Ok(Self { info, raw: device, queue, mappable, takes_spirv, failure, end: OnceLock::new() })
     }
 
     /// Gives the device up: whatever is still asked of it fails as lost.

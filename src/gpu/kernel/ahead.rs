@@ -1,6 +1,6 @@
 //! What can be done for a picture before there is a device to do it on: opening one takes longer than reading most scenes.
 
-use super::shader::{Kernel, Textures, Variant};
+use super::shader::{Kernel, Tables, Variant};
 use super::specialisation::Specialisation;
 use super::spirv::Parsed;
 use crate::accel::Acceleration;
@@ -37,7 +37,7 @@ impl Ahead {
         let kernel = Kernel::Tier(selection.tier);
         let (scene, settings) = in_range(scene, settings);
         let grid = Acceleration::grid_of(&scene, effects.set, kernel.rounding(), &tuning.density);
-        let specialisation = Specialisation::new(&scene, &settings, effects, kernel, &tuning, Textures::Stored)
+        let specialisation = Specialisation::new(&scene, &settings, effects, kernel, &tuning, Tables::Stored)
             .with_grid(grid.as_ref(), &tuning);
         let module = Parsed::new(&specialisation.module()).ok()?;
         Some(Self { variant: specialisation.variant(), module })

@@ -23,6 +23,9 @@ impl Compiler<'_> {
         constants: &[(&str, f64)],
         bindings: &[u32],
     ) -> Result<wgpu::ShaderModule, Error> {
+        if !self.device.takes_spirv {
+            return self.translated(module.specialised(entry_point, constants).map_err(Error::Shader)?);
+        }
         let words = module.spirv(entry_point, constants, bindings).map_err(Error::Shader)?;
         self.device.checked("reading the shader", || {
             #[allow(
@@ -43,5 +46,12 @@ impl Compiler<'_> {
                 })
             }
         })
+    }
+
+    /// The module as wgpu translates it, which leaves to the driver what it fuses.
+    fn translated(self, module: naga::Module) -> Result<wgpu::ShaderModule, Error> {
+        let source = wgpu::ShaderSource::Naga(Cow::Owned(module));
+        let descriptor = wgpu::ShaderModuleDescriptor { label: None, source };
+        self.device.checked("reading the shader", || self.device.raw.create_shader_module(descriptor))
     }
 }

@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 use std::num::NonZeroU32;
 
-use super::shader::{Kernel, Places, Slots, Storage, Textures, Variant, Walk};
+use super::shader::{Kernel, Places, Slots, Storage, Tables, Variant, Walk};
 use crate::precision::Tier;
 
 /// Where the declarations of the host stand in a module.
@@ -29,7 +29,7 @@ files! {
     "kernel_plain" "kernel_robust" "kernel_schoolbook" "path_in_place" "path_kept" "path_tree" "probe" "quantize" "ray_plain"
     "ray_robust" "real_f32" "real_f64" "reflect" "refract" "resolve" "roots_pair" "roots_single" "scene_ranges" "scene_tables"
     "search_all" "search_lists" "secondary_both" "secondary_grid" "secondary_large" "see" "selftest" "shade" "slots_list"
-    "slots_tiles" "stage" "tables_sampled" "tables_stored" "texels" "types" "vectors_f32" "vectors_f64" "walk_at_once"
+    "slots_tiles" "stage" "tables_buffers" "tables_textures" "texels" "texture_sampled" "texture_stored" "types" "vectors_f32" "vectors_f64" "walk_at_once"
     "walk_in_turn"
 }
 
@@ -118,7 +118,8 @@ impl Variant {
             },
             "scene" => either(storage == Storage::Ranges, "ranges", "tables"),
             "search" => either(storage == Storage::Ranges, "all", "lists"),
-            "tables" => either(storage == Storage::Tables(Textures::Sampled), "sampled", "stored"),
+            "tables" => either(storage == Storage::Tables(Tables::Buffers), "buffers", "textures"),
+            "texture" => either(storage == Storage::Tables(Tables::Sampled), "sampled", "stored"),
             "secondary" => match self.places {
                 Places::Grid => "grid",
                 Places::Large => "large",

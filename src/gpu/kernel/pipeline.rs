@@ -4,7 +4,7 @@ use super::compiler::Compiler;
 use super::shader::{Module, Slots, Storage, Walk};
 use super::specialisation::Specialisation;
 use super::spirv::Parsed;
-use super::stage::Access::{Read, ReadWrite, Table, Texels, Uniform};
+use super::stage::Access::{Kept, Read, ReadWrite, Table, Uniform};
 use super::stage::{Access, Stage};
 use crate::gpu::device::error::Error;
 use crate::threads::at_once;
@@ -59,8 +59,12 @@ pub(crate) fn compile(
         &own
     };
     let [words, pairs, vectors] = [1, 2, 4].map(|components| match specialisation.storage {
-        Storage::Tables(textures) => Table(textures, components),
+        Storage::Tables(tables) => Table(tables, components),
         Storage::Ranges => Read,
+    });
+    let [kept_words, kept_vectors] = [1, 4].map(|components| match specialisation.storage {
+        Storage::Tables(tables) => Kept(tables, components),
+        Storage::Ranges => ReadWrite,
     });
     // What every stage reads and writes.
     let mut common = vec![(0, Uniform), (7, ReadWrite), (8, ReadWrite), (13, pairs), (17, pairs)];
@@ -72,7 +76,7 @@ pub(crate) fn compile(
         common.push((5, Read));
     }
     if specialisation.keeps_paths() {
-        common.extend([(12, ReadWrite), (18, Texels(4)), (19, Uniform)]);
+        common.extend([(12, ReadWrite), (18, kept_vectors), (19, Uniform)]);
     }
     let (see_entry, places) = match specialisation.slots {
         Slots::Tiles => (SEE_TILES, Uniform),
@@ -105,7 +109,7 @@ pub(crate) fn compile(
     let bounce = || -> Result<Bounce, Error> {
         if let Walk::InTurn(_) = specialisation.walk {
             let shade = || compiler.device.guarded(|| kernel(SHADE_PATHS, &[(11, vectors), (22, words)]));
-            let walk = || kernel(WALK_PATHS, &[&[(11, vectors), (23, Texels(1))][..], copies].concat());
+            let walk = || kernel(WALK_PATHS, &[&[(11, vectors), (23, kept_words)][..], copies].concat());
             let (shade, (walk, begin)) = at_once(shade, || (walk(), between()));
             Ok(Bounce { begin: begin?, walk: walk?, shade: Some(shade?) })
         } else {

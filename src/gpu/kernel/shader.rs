@@ -71,20 +71,22 @@ pub enum Places {
     Both,
 }
 
-/// How kernels read the textures that hold a scene.
+/// What holds the tables of a scene, and what goes from kernel to kernel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Textures {
-    /// As storage textures.
+pub enum Tables {
+    /// Storage buffers.
+    Buffers,
+    /// Storage textures.
     Stored,
-    /// As sampled textures.
+    /// Sampled textures.
     Sampled,
 }
 
 /// How spheres and lights reach the kernel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Storage {
-    /// In textures, with lists of those that a ray can meet.
-    Tables(Textures),
+    /// In tables, with lists of those that a ray can meet.
+    Tables(Tables),
     /// In storage buffers, a range of spheres for each ray of a batch.
     Ranges,
 }
@@ -199,8 +201,8 @@ impl Module {
     }
 
     /// The module that writes back what it reads.
-    pub fn echo(kernel: Kernel, textures: Textures) -> Self {
-        Self::of(&["echo"], &Variant { storage: Storage::Tables(textures), ..Variant::of_ranges(kernel) })
+    pub fn echo(kernel: Kernel, tables: Tables) -> Self {
+        Self::of(&["echo"], &Variant { storage: Storage::Tables(tables), ..Variant::of_ranges(kernel) })
     }
 
     /// The module that sends batches of rays through `kernel`.

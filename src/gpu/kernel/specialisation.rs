@@ -2,7 +2,7 @@
 
 use std::num::NonZeroU32;
 
-use super::shader::{Kernel, Module, Places, Slots, Storage, Textures, Variant, Walk};
+use super::shader::{Kernel, Module, Places, Slots, Storage, Tables, Variant, Walk};
 use crate::accel::Grid;
 use crate::effects::{Effect, EffectSet, Effects};
 use crate::scene::Scene;
@@ -43,14 +43,14 @@ pub struct Specialisation {
 }
 
 impl Specialisation {
-    /// For `scene` with `effects` under `settings`, on a device with this tuning that reads these textures.
+    /// For `scene` with `effects` under `settings`, on a device with this tuning and these tables.
     pub fn new(
         scene: &Scene,
         settings: &Settings,
         effects: &Effects,
         kernel: Kernel,
         tuning: &Tuning,
-        textures: Textures,
+        tables: Tables,
     ) -> Self {
         Self {
             kernel,
@@ -59,7 +59,7 @@ impl Specialisation {
             refraction: NonZeroU32::new(effects.waiting(scene)).and_then(NonZeroU32::checked_next_power_of_two),
             shared_surfaces: false,
             blinn: settings.specular == Specular::Blinn,
-            storage: Storage::Tables(textures),
+            storage: Storage::Tables(tables),
             lights: scene.lights.len() as u32,
             places: Places::Both,
             sphere_count: 0,

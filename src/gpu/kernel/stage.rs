@@ -2,15 +2,17 @@
 
 use super::cache::KernelCache;
 use super::compiler::Compiler;
-use super::shader::Textures;
+use super::shader::Tables;
 use super::spirv::Parsed;
 use crate::gpu::device::calls::Call;
 use crate::gpu::device::error::Error;
 use crate::gpu::device::open::Device;
 use crate::gpu::device::upload::texel_format;
 
-/// Textures that a kernel reads and writes at the most, whatever it is specialised for.
-pub(crate) const MAX_TEXTURES: u32 = 13;
+/// Tables that a kernel reads and writes at the most, whatever it is specialised for.
+pub(crate) const MAX_TABLES: u32 = 13;
+/// Buffers besides.
+pub(crate) const MAX_BUFFERS: u32 = 4;
 
 /// How a binding is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,10 +20,10 @@ pub(crate) enum Access {
     Uniform,
     Read,
     ReadWrite,
-    /// A table with so many `u32` a texel.
-    Table(Textures, u32),
-    /// A texture with so many `u32` a texel that is written.
-    Texels(u32),
+    /// A table that is read; as a texture it has so many `u32` a texel.
+    Table(Tables, u32),
+    /// Likewise, and it is written.
+    Kept(Tables, u32),
 }
 
 impl Access {
@@ -35,30 +37,30 @@ impl Access {
         };
         match self {
             Self::Uniform => buffer(wgpu::BufferBindingType::Uniform),
-            Self::Read => buffer(wgpu::BufferBindingType::Storage { read_only: true }),
-            Self::ReadWrite => buffer(wgpu::BufferBindingType::Storage { read_only: false }),
-            Self::Table(Textures::Sampled, _) => wgpu::BindingType::Texture {
+            Self::Read | Self::Table(Tables::Buffers, _) => {
+                buffer(wgpu::BufferBindingType::Storage { read_only: true })
+            }
+            Self::ReadWrite | Self::Kept(Tables::Buffers, _) => {
+                buffer(wgpu::BufferBindingType::Storage { read_only: false })
+            }
+            Self::Table(Tables::Sampled, _) => wgpu::BindingType::Texture {
                 sample_type: wgpu::TextureSampleType::Uint,
                 view_dimension,
                 multisampled: false,
             },
-            Self::Table(Textures::Stored, components) => {
+            Self::Table(Tables::Stored, components) => {
                 storage_texture(wgpu::StorageTextureAccess::ReadOnly, components)
             }
-            Self::Texels(components) => storage_texture(wgpu::StorageTextureAccess::WriteOnly, components),
+            Self::Kept(_, components) => storage_texture(wgpu::StorageTextureAccess::WriteOnly, components),
         }
     }
 
-    fn is_texture(self) -> bool {
-        matches!(self, Self::Table(..) | Self::Texels(_))
+    fn is_table(self) -> bool {
+        matches!(self, Self::Table(..) | Self::Kept(..))
     }
-}
 
-/// How kernels read the textures of a table.
-pub(crate) fn table_usage(textures: Textures) -> wgpu::TextureUsages {
-    match textures {
-        Textures::Stored => wgpu::TextureUsages::STORAGE_BINDING,
-        Textures::Sampled => wgpu::TextureUsages::TEXTURE_BINDING,
+    fn is_storage_buffer(self) -> bool {
+        matches!(self.binding_type(), wgpu::BindingType::Buffer { ty: wgpu::BufferBindingType::Storage { .. }, .. })
     }
 }
 
@@ -102,9 +104,9 @@ impl Stage {
             ty: access.binding_type(),
             count: None,
         };
-        debug_assert!(bindings.iter().filter(|(_, access)| access.is_texture()).count() <= MAX_TEXTURES as usize);
+        debug_assert!(bindings.iter().filter(|(_, access)| access.is_table()).count() <= MAX_TABLES as usize);
         let most = device.raw.limits().max_storage_buffers_per_shader_stage;
-        let buffers = bindings.iter().filter(|(_, access)| matches!(access, Access::Read | Access::ReadWrite)).count();
+        let buffers = bindings.iter().filter(|(_, access)| access.is_storage_buffer()).count();
         if buffers > most as usize {
             let limit = format!("max_storage_buffers_per_shader_stage is {most}, and it uses {buffers}");
             return Err(Error::too_large(&device.info, entry_point, limit));

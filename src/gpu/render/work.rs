@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use super::tiles::{TILE_PIXELS, TILES_SIZE};
 use crate::gpu::device::readable::Readable;
-use crate::gpu::device::upload::{empty_texels, small_buffer};
+use crate::gpu::device::upload::small_buffer;
 use crate::gpu::facade::Gpu;
 use crate::gpu::kernel::pipeline::Stages;
 use crate::gpu::kernel::shader::{Slots, Walk};
 use crate::gpu::kernel::specialisation::Specialisation;
-use crate::gpu::kernel::stage::{Resource, Stage, table_usage};
+use crate::gpu::kernel::stage::{Resource, Stage};
+use crate::gpu::table::bind::empty_table;
 
 /// The counts of workgroups in `shaders/bounce.wgsl`: their bytes, and where those of the kernel with one path an invocation and
 /// of the one with several begin.
@@ -30,7 +31,7 @@ pub(super) struct Work {
     pub(super) see_group: wgpu::BindGroup,
     /// For what goes before a bounce.
     pub(super) begin_group: Option<wgpu::BindGroup>,
-    /// For a bounce, by whether another one follows, and from which of the two textures of paths to the other.
+    /// For a bounce, by whether another one follows, and from which of the two tables of paths to the other.
     pub(super) walk_groups: Option<[[wgpu::BindGroup; 2]; 2]>,
     /// Likewise for its shading.
     pub(super) shade_groups: Option<[[wgpu::BindGroup; 2]; 2]>,
@@ -54,7 +55,7 @@ impl Work {
         specialisation: &Specialisation,
         has_bounces: bool,
     ) -> Self {
-        let (device, usage) = (&gpu.device, table_usage(gpu.textures()));
+        let (device, tables) = (&gpu.device, gpu.tables());
         let empty = |size, usage| {
             device.raw.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
         };
@@ -64,9 +65,9 @@ impl Work {
         let pixels = Readable::new(device, pixel_count);
         let ray_counts = Readable::new(device, if specialisation.count_rays { slots * RAY_COUNT_SIZE / 4 } else { 2 });
         let paths = specialisation.path_size() * if specialisation.keeps_paths() { slots } else { 1 };
-        let paths = [0, 1].map(|_| empty_texels(device, paths, 4, usage));
+        let paths = [0, 1].map(|_| empty_table(device, tables, paths, 4));
         let in_turn = matches!(specialisation.walk, Walk::InTurn(_));
-        let hits = empty_texels(device, if in_turn { 4 * slots } else { 4 }, 1, usage);
+        let hits = empty_table(device, tables, if in_turn { 4 * slots } else { 4 }, 1);
         let tiles = match specialisation.slots {
             Slots::Tiles => empty(TILES_SIZE, wgpu::BufferUsages::UNIFORM | copied),
             Slots::List => empty((1 + pixel_count) * 8, storage | copied),
@@ -86,10 +87,9 @@ impl Work {
         let has_next =
             [0_u32, 1].map(|has_next| small_buffer(device, bytemuck::bytes_of(&has_next), wgpu::BufferUsages::UNIFORM));
         let turn = |stage: &Stage, from: usize, goes_on: usize| {
-            let [from, to] = [from, 1 - from].map(|half| Resource::Texels(paths[half].clone()));
-            let [read, written] = [0, 1].map(|_| Resource::Texels(hits.clone()));
+            let [from, to] = [from, 1 - from].map(|half| paths[half].clone());
             let has_next = Resource::Buffer(has_next[goes_on].clone());
-            let turn = [(11, from), (18, to), (19, has_next), (22, read), (23, written)];
+            let turn = [(11, from), (18, to), (19, has_next), (22, hits.clone()), (23, hits.clone())];
             stage.bind(device, &[&all[..], &turn].concat())
         };
         let see_group = turn(&stages.see, 1, usize::from(has_bounces));

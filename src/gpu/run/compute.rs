@@ -3,11 +3,12 @@
 use crate::gpu::device::contents::Contents;
 use crate::gpu::device::error::Error;
 use crate::gpu::device::readable::Readable;
-use crate::gpu::device::upload::{small_buffer, texels};
+use crate::gpu::device::upload::small_buffer;
 use crate::gpu::kernel::compiler::Compiler;
 use crate::gpu::kernel::shader::Module;
 use crate::gpu::kernel::spirv::Parsed;
-use crate::gpu::kernel::stage::{Access, Resource, Stage, table_usage};
+use crate::gpu::kernel::stage::{Access, Resource, Stage};
+use crate::gpu::table::bind::table;
 
 /// A kernel with its buffers.
 pub(super) struct Job<'a> {
@@ -42,14 +43,12 @@ impl Job<'_> {
             let mut resources = vec![(self.output, Resource::Buffer(results.buffer.clone()))];
             for &(binding, access, contents) in self.inputs {
                 let buffer = |usage| Resource::Buffer(small_buffer(device, contents, usage));
-                let texture = |components, usage| {
-                    texels(device, &Contents::packed(contents), components, usage).map(Resource::Texels)
-                };
                 let resource = match access {
                     Access::Uniform => buffer(wgpu::BufferUsages::UNIFORM),
                     Access::Read | Access::ReadWrite => buffer(wgpu::BufferUsages::STORAGE),
-                    Access::Table(textures, components) => texture(components, table_usage(textures))?,
-                    Access::Texels(components) => texture(components, wgpu::TextureUsages::STORAGE_BINDING)?,
+                    Access::Table(tables, components) | Access::Kept(tables, components) => {
+                        table(device, tables, &Contents::packed(contents), components)?
+                    }
                 };
                 resources.push((binding, resource));
             }

@@ -36,10 +36,10 @@ pub fn echo_layout(
     let accel = Acceleration::new(scene, &Camera::new(scene, settings), effects.set, kernel.rounding());
     let packed = Packed::new(scene, settings, effects, kernel, &accel, None, 0.25);
     let [head, sphere, light, tail] = COUNTS;
-    let table = Access::Table(gpu.textures(), 4);
+    let table = Access::Table(gpu.tables(), 4);
     let job = Job {
         what: "echoing the layout",
-        module: &Module::echo(kernel, gpu.textures()),
+        module: &Module::echo(kernel, gpu.tables()),
         entry_point: "echo_layout",
         inputs: &[
             (0, Access::Uniform, &packed.params.bytes()),

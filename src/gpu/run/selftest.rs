@@ -87,7 +87,9 @@ impl Gpu {
 /// The file that stands for a pass of this device, driver and shader, in the user's cache folder.
 fn record_of_pass(gpu: &Gpu) -> Option<PathBuf> {
     let info = &gpu.device.info;
-    let key = cache::key(&[&info.name, &info.driver, &info.pci, &Module::selftest().text]);
+    // wgpu's translation lets drivers fuse.
+    let way = if gpu.device.takes_spirv { "as written" } else { "translated" };
+    let key = cache::key(&[&info.name, &info.driver, &info.pci, way, &Module::selftest().text]);
     Some(cache::folder()?.join(format!("transforms-{key}")))
 }
 

@@ -5,31 +5,82 @@ use crate::accel::Acceleration;
 use crate::gpu::device::contents::Contents;
 use crate::gpu::device::error::Error;
 use crate::gpu::device::open::Device;
-use crate::gpu::device::upload::{max_texels, upload, upload_texels};
-use crate::gpu::kernel::shader::Textures;
+use crate::gpu::device::upload::{empty_texels, max_texels, upload, upload_texels};
+use crate::gpu::kernel::shader::Tables;
 use crate::gpu::kernel::specialisation::Specialisation;
-use crate::gpu::kernel::stage::{Resource, table_usage};
+use crate::gpu::kernel::stage::Resource;
 
-/// The textures of the lists, by binding.
+/// How textures that are tables are bound; `None` for tables in buffers.
+fn texture_usage(tables: Tables) -> Option<wgpu::TextureUsages> {
+    match tables {
+        Tables::Buffers => None,
+        Tables::Stored => Some(wgpu::TextureUsages::STORAGE_BINDING),
+        Tables::Sampled => Some(wgpu::TextureUsages::TEXTURE_BINDING),
+    }
+}
+
+/// A table with `contents`, of so many `u32` a texel where it is a texture.
+pub(crate) fn table(
+    device: &Device,
+    tables: Tables,
+    contents: &Contents,
+    components: u32,
+) -> Result<Resource, Error> {
+    match texture_usage(tables) {
+        None => storage_buffer(device, contents),
+        Some(usage) => upload_texels(device, contents, components, usage).map(Resource::Texels),
+    }
+}
+
+/// A table for so many bytes that kernels keep and read.
+pub(crate) fn empty_table(device: &Device, tables: Tables, size: u64, components: u32) -> Resource {
+    match texture_usage(tables) {
+        None => {
+            let usage = wgpu::BufferUsages::STORAGE;
+            let descriptor = wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false };
+            Resource::Buffer(device.raw.create_buffer(&descriptor))
+        }
+        Some(usage) => Resource::Texels(empty_texels(device, size, components, usage)),
+    }
+}
+
+fn storage_buffer(device: &Device, contents: &Contents) -> Result<Resource, Error> {
+    // A binding of size 0 is not allowed.
+    let size = contents.len().max(64);
+    upload(device, contents, wgpu::BufferUsages::STORAGE, size).map(Resource::Buffer)
+}
+
+/// Greatest size of a table, in bytes.
+fn max_table(device: &Device, tables: Tables, components: u64) -> u64 {
+    match tables {
+        Tables::Buffers => max_buffer(device),
+        Tables::Stored | Tables::Sampled => max_texels(device, 4 * components),
+    }
+}
+
+fn max_buffer(device: &Device) -> u64 {
+    device.info.max_storage_binding.min(device.info.max_buffer)
+}
+
+/// The lists, by binding.
 pub(crate) fn list_resources(
     device: &Device,
-    textures: Textures,
+    tables: Tables,
     [cells, entries]: &[Contents; 2],
 ) -> Result<Vec<(u32, Resource)>, Error> {
-    let texels = |contents| upload_texels(device, contents, 2, table_usage(textures)).map(Resource::Texels);
-    Ok(vec![(13, texels(cells)?), (17, texels(entries)?)])
+    Ok(vec![(13, table(device, tables, cells, 2)?), (17, table(device, tables, entries, 2)?)])
 }
 
 /// Whether the device has room for the shapes in the order of the grid's lists.
-pub(crate) fn copies_fit(device: &Device, packed: &Packed, accel: &Acceleration) -> bool {
+pub(crate) fn copies_fit(device: &Device, tables: Tables, packed: &Packed, accel: &Acceleration) -> bool {
     let entries = accel.grid.as_ref().map_or(0, |grid| grid.lists.entries.len());
-    (entries * packed.shapes[0].element_size()) as u64 <= max_texels(device, 16)
+    (entries * packed.shapes[0].element_size()) as u64 <= max_table(device, tables, 4)
 }
 
-/// The textures of the shapes in the order of the grid's lists, by binding, where kernels read them so.
+/// The shapes in the order of the grid's lists, by binding, where kernels read them so.
 pub(crate) fn copy_resources(
     device: &Device,
-    textures: Textures,
+    tables: Tables,
     packed: &Packed,
     accel: &Acceleration,
     specialisation: &Specialisation,
@@ -39,7 +90,7 @@ pub(crate) fn copy_resources(
         // Packed once: to pack the spheres in any order takes far longer than to copy them so.
         let all = half.bytes();
         let contents = Contents::gathered(&all, half.element_size(), entries);
-        upload_texels(device, &contents, 4, table_usage(textures)).map(Resource::Texels)
+        table(device, tables, &contents, 4)
     };
     let [first, second] = &packed.shapes;
     let entries = &grid.lists.entries;
@@ -52,31 +103,28 @@ pub(crate) fn copy_resources(
 /// The buffers and textures of the scene, by binding, beside those of the lists.
 pub(crate) fn scene_resources(
     device: &Device,
-    textures: Textures,
+    tables: Tables,
     packed: &Packed,
     specialisation: &Specialisation,
 ) -> Result<Vec<(u32, Resource)>, Error> {
-    let (storage, uniform) = (wgpu::BufferUsages::STORAGE, wgpu::BufferUsages::UNIFORM);
-    // A binding of size 0 is not allowed.
-    let filled =
-        |contents: &Contents, usage| upload(device, contents, usage, contents.len().max(64)).map(Resource::Buffer);
-    let texels = |contents: &Contents| upload_texels(device, contents, 4, table_usage(textures)).map(Resource::Texels);
+    let params = upload(device, &packed.params, wgpu::BufferUsages::UNIFORM, packed.params.len())?;
+    let vectors = |contents: &Contents| table(device, tables, contents, 4);
     let none = Contents::none();
-    let second_half = |half| texels(if specialisation.reads_shape_ends() { half } else { &none });
+    let second_half = |half| vectors(if specialisation.reads_shape_ends() { half } else { &none });
     let mut resources = vec![
-        (0, filled(&packed.params, uniform)?),
-        (1, texels(&packed.shapes[0])?),
+        (0, Resource::Buffer(params)),
+        (1, vectors(&packed.shapes[0])?),
         (20, second_half(&packed.shapes[1])?),
-        (2, texels(&packed.materials)?),
-        (3, texels(&packed.lights)?),
-        (4, texels(&packed.window)?),
-        (14, texels(&packed.faces)?),
+        (2, vectors(&packed.materials)?),
+        (3, vectors(&packed.lights)?),
+        (4, vectors(&packed.window)?),
+        (14, vectors(&packed.faces)?),
     ];
     if specialisation.refraction.is_some() {
-        resources.push((5, filled(&packed.glasses, storage)?));
+        resources.push((5, storage_buffer(device, &packed.glasses)?));
     }
     if let Some(([first, second], lights)) = &packed.low {
-        resources.extend([(9, texels(first)?), (21, second_half(second)?), (10, texels(lights)?)]);
+        resources.extend([(9, vectors(first)?), (21, second_half(second)?), (10, vectors(lights)?)]);
     }
     Ok(resources)
 }
@@ -84,13 +132,14 @@ pub(crate) fn scene_resources(
 /// What the tables of a scene take, each with what the device holds of its kind.
 type Sizes = Vec<(&'static str, usize, u64)>;
 
-fn list_sizes(device: &Device, [cells, entries]: &[Contents; 2]) -> Sizes {
-    vec![("cells with lists", cells.len(), max_texels(device, 8)), ("lists", entries.len(), max_texels(device, 8))]
+fn list_sizes(device: &Device, tables: Tables, [cells, entries]: &[Contents; 2]) -> Sizes {
+    let most = max_table(device, tables, 2);
+    vec![("cells with lists", cells.len(), most), ("lists", entries.len(), most)]
 }
 
 /// Whether the device has no room for these lists.
-pub(crate) fn are_too_large(device: &Device, lists: &[Contents; 2]) -> bool {
-    too_large(&list_sizes(device, lists)).is_some()
+pub(crate) fn are_too_large(device: &Device, tables: Tables, lists: &[Contents; 2]) -> bool {
+    too_large(&list_sizes(device, tables, lists)).is_some()
 }
 
 /// The first that is too large.
@@ -99,17 +148,21 @@ fn too_large(sizes: &Sizes) -> Option<&(&'static str, usize, u64)> {
 }
 
 /// Refuses a scene whose tables are larger than the device's bindings and textures.
-pub(crate) fn check_fits(device: &Device, packed: &Packed, lists: &[Contents; 2]) -> Result<(), Error> {
-    let buffer = device.info.max_storage_binding.min(device.info.max_buffer);
-    let texels = max_texels(device, 16);
-    let mut sizes = list_sizes(device, lists);
+pub(crate) fn check_fits(
+    device: &Device,
+    tables: Tables,
+    packed: &Packed,
+    lists: &[Contents; 2],
+) -> Result<(), Error> {
+    let most = max_table(device, tables, 4);
+    let mut sizes = list_sizes(device, tables, lists);
     sizes.extend([
         // Paths keep the index of a sphere as a number, exact in `f32` up to 2²⁴.
-        ("spheres", packed.materials.len(), texels.min((packed.materials.element_size() as u64) << 24)),
-        ("lights", packed.lights.len(), texels),
-        ("glass", packed.glasses.len(), buffer),
-        ("columns and rows", packed.window.len(), texels),
-        ("faces around the lights", packed.faces.len(), texels),
+        ("spheres", packed.materials.len(), most.min((packed.materials.element_size() as u64) << 24)),
+        ("lights", packed.lights.len(), most),
+        ("glass", packed.glasses.len(), max_buffer(device)),
+        ("columns and rows", packed.window.len(), most),
+        ("faces around the lights", packed.faces.len(), most),
     ]);
     match too_large(&sizes) {
         None => Ok(()),

@@ -1,0 +1,144 @@
+//! Devices that offer less than the one here: the same picture with what they have, or a refusal that names what is missing.
+//!
+//! `TRUERAY_MASKED=all` renders every scene of `scenes/` with every mask at every tier, where otherwise a few stand for them.
+
+use trueray::compare::Explanation;
+use trueray::cpu::Reference;
+use trueray::effects::Effects;
+use trueray::engine::Backend;
+use trueray::gpu::{Choice, Device, Error, Gpu, Mask, Tables};
+use trueray::precision::Tier;
+use trueray::scene::Scene;
+use trueray::settings::Settings;
+use trueray::tuning::Tuning;
+
+use crate::golden::all_subjects;
+use crate::support::{cpu_picture, gpu, gpu_picture, is_set, say};
+
+/// Those that between them need every table.
+const SOME: [&str; 7] = [
+    "basic/ten-thousand-spheres",
+    "effects/everything",
+    "effects/same-place",
+    "hard/mirror-corridor",
+    "refraction/glass-in-glass",
+    "show/glass",
+    "show/showcase",
+];
+
+/// Devices of the field, and what each is taken to hold its tables in.
+fn masks() -> Vec<(&'static str, Mask, Tables)> {
+    let none = Mask::default();
+    vec![
+        ("no f64", Mask { no_f64: true, ..none }, Tables::Buffers),
+        ("no 64-bit integers", Mask { no_int64: true, ..none }, Tables::Buffers),
+        ("8 storage buffers", Mask { storage_buffers: Some(8), ..none }, Tables::Stored),
+        ("4 storage textures", Mask { storage_textures: Some(4), ..none }, Tables::Buffers),
+        (
+            "the least of Vulkan",
+            Mask {
+                storage_buffers: Some(4),
+                storage_textures: Some(4),
+                sampled_textures: Some(16),
+                uniform_bytes: Some(16_384),
+                invocations: Some(128),
+                no_f64: true,
+                no_int64: true,
+                no_shared_memory: true,
+                ..none
+            },
+            Tables::Sampled,
+        ),
+        ("128 invocations", Mask { invocations: Some(128), ..none }, Tables::Buffers),
+        ("no SPIR-V", Mask { no_spirv: true, ..none }, Tables::Buffers),
+    ]
+}
+
+fn masked(mask: &Mask) -> Gpu {
+    let gpu = Gpu::with(Device::masked(&Choice::Gpu, mask).unwrap()).unwrap();
+    let mut gpu = gpu.keeping_kernels();
+    // As hardware does.
+    let tuning = Tuning { texture_tables: false, ..gpu.tuned().tuning };
+    gpu.set_tuning(tuning).unwrap();
+    gpu
+}
+
+fn assert_explained(who: &str, gpu: &Gpu, tier: Tier, scene: &Scene, settings: &Settings) {
+    let effects = Effects::of(scene, settings);
+    let (picture, not_finite) = gpu_picture(gpu, tier, scene, settings, &effects);
+    assert_eq!(not_finite, 0, "{who}");
+    let (expected, _) = cpu_picture::<f64>(scene, settings, &effects);
+    let reference = Reference::new(scene, settings, &effects);
+    let judge = Backend::Device(gpu, tier).judge();
+    let explanation = Explanation::of(&picture, &expected, &reference, &judge);
+    assert_eq!(explanation.unexplained, 0, "{who}\n{}", explanation.report());
+}
+
+#[test]
+fn every_scene_is_rendered_with_what_there_is() {
+    if gpu("every_scene_is_rendered_with_what_there_is").is_none() {
+        return;
+    }
+    let is_whole = is_set("TRUERAY_MASKED");
+    let mut rendered = 0;
+    for (name, mask, tables) in masks() {
+        let gpu = masked(&mask);
+        assert_eq!(gpu.tables(), tables, "{name}");
+        let tiers: Vec<_> = Tier::ALL.into_iter().filter(|&tier| gpu.kernel(tier).is_ok()).collect();
+        assert_eq!(gpu.device.info.f64, !mask.no_f64 && !mask.no_int64, "{name}");
+        for (scene_name, scene, settings) in all_subjects() {
+            if !is_whole && !SOME.contains(&scene_name.as_str()) {
+                continue;
+            }
+            let tiers = if is_whole { &tiers[..] } else { &tiers[..1] };
+            for &tier in tiers {
+                assert_explained(&format!("{scene_name} at {tier}, {name}"), &gpu, tier, &scene, &settings);
+                rendered += 1;
+            }
+        }
+    }
+    if is_whole {
+        say("every_scene_is_rendered_with_what_there_is", &format!("{rendered} pictures, none with an unexplained pixel"));
+    }
+}
+
+/// Tables in buffers, in storage textures and in sampled ones: the same bytes at every tier.
+#[test]
+fn what_holds_the_tables_changes_no_byte() {
+    let Some(usual) = gpu("what_holds_the_tables_changes_no_byte") else { return };
+    let others = [
+        masked(&Mask::default()),
+        masked(&Mask { storage_buffers: Some(8), ..Mask::default() }),
+        masked(&Mask { storage_buffers: Some(8), storage_textures: Some(4), ..Mask::default() }),
+    ];
+    assert_eq!(others.each_ref().map(Gpu::tables), [Tables::Buffers, Tables::Stored, Tables::Sampled]);
+    let walks = |tuning: Tuning| {
+        let at_once = Tuning { in_place_below: 0.0, in_turn_from: 1e9, ..tuning };
+        [tuning, at_once, Tuning { in_turn_from: 0.0, ..at_once }]
+    };
+    for (name, scene, settings) in all_subjects() {
+        if !SOME.contains(&name.as_str()) {
+            continue;
+        }
+        let effects = Effects::of(&scene, &settings);
+        for tier in Tier::ALL.into_iter().filter(|&tier| usual.kernel(tier).is_ok()) {
+            let (expected, _) = gpu_picture(&usual, tier, &scene, &settings, &effects);
+            for (index, gpu) in others.iter().enumerate() {
+                let (picture, _) = gpu_picture(gpu, tier, &scene, &settings, &effects);
+                assert!(picture == expected, "{name} at {tier} in {:?}", gpu.tables());
+                _ = (index, walks);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_limit_that_is_too_small_is_named() {
+    if gpu("a_limit_that_is_too_small_is_named").is_none() {
+        return;
+    }
+    let opened = Device::masked(&Choice::Gpu, &Mask { invocations: Some(32), ..Mask::default() });
+    let error = opened.and_then(Gpu::with).unwrap_err();
+    assert!(matches!(error, Error::Unsuitable { .. }), "{error}");
+    assert!(error.to_string().contains("max_compute_invocations_per_workgroup"), "{error}");
+}
