@@ -79,7 +79,7 @@ impl<T: Real> Reference<T> {
         (i < width && j < height).then(|| self.pixel_color(i, j, &mut ()).to_f64())
     }
 
-    /// The colour of a pixel: the mean over its samples, row by row, unclamped; read it beside `shaders/main.wgsl`. Taken
+    /// The colour of a pixel: the mean over its samples, row by row, unclamped; read it beside `shaders/resolve.wgsl`. Taken
     /// from differences to the first sample, it is exact where all are equal.
     fn pixel_color<W: Witness<T>>(&self, i: u32, j: u32, witness: &mut W) -> Vec3<T> {
         let mut samples = self.primaries(i, j).map(|primary| trace(&self.world, &primary, witness));

@@ -23,6 +23,7 @@ mod files;
 mod film;
 mod fuzz;
 mod golden;
+mod house;
 mod keys;
 mod lists;
 mod magnitudes;
