@@ -1,5 +1,6 @@
 //! A compiled kernel: the only place that makes pipelines, for pictures and for everything else.
 
+use super::bindings::Binding;
 use super::cache::KernelCache;
 use super::compiler::Compiler;
 use super::shader::Textures;
@@ -7,52 +8,9 @@ use super::spirv::Parsed;
 use crate::gpu::device::calls::Call;
 use crate::gpu::device::error::Error;
 use crate::gpu::device::open::Device;
-use crate::gpu::device::upload::texel_format;
 
 /// Textures that a kernel reads and writes at the most, whatever it is specialised for.
 pub(crate) const MAX_TEXTURES: u32 = 13;
-
-/// How a binding is used.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Access {
-    Uniform,
-    Read,
-    ReadWrite,
-    /// A table with so many `u32` a texel.
-    Table(Textures, u32),
-    /// A texture with so many `u32` a texel that is written.
-    Texels(u32),
-}
-
-impl Access {
-    fn binding_type(self) -> wgpu::BindingType {
-        let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
-        let view_dimension = wgpu::TextureViewDimension::D2;
-        let storage_texture = |access, components| wgpu::BindingType::StorageTexture {
-            access,
-            format: texel_format(components),
-            view_dimension,
-        };
-        match self {
-            Self::Uniform => buffer(wgpu::BufferBindingType::Uniform),
-            Self::Read => buffer(wgpu::BufferBindingType::Storage { read_only: true }),
-            Self::ReadWrite => buffer(wgpu::BufferBindingType::Storage { read_only: false }),
-            Self::Table(Textures::Sampled, _) => wgpu::BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Uint,
-                view_dimension,
-                multisampled: false,
-            },
-            Self::Table(Textures::Stored, components) => {
-                storage_texture(wgpu::StorageTextureAccess::ReadOnly, components)
-            }
-            Self::Texels(components) => storage_texture(wgpu::StorageTextureAccess::WriteOnly, components),
-        }
-    }
-
-    fn is_texture(self) -> bool {
-        matches!(self, Self::Table(..) | Self::Texels(_))
-    }
-}
 
 /// How kernels read the textures of a table.
 pub(crate) fn table_usage(textures: Textures) -> wgpu::TextureUsages {
@@ -69,6 +27,9 @@ pub(crate) enum Resource {
     Texels(wgpu::TextureView),
 }
 
+/// Resources by the names of the variables that they are bound to.
+pub(crate) type Resources = Vec<(&'static str, Resource)>;
+
 impl Resource {
     fn as_binding(&self) -> wgpu::BindingResource<'_> {
         match self {
@@ -83,36 +44,34 @@ impl Resource {
 pub(crate) struct Stage {
     pub(crate) pipeline: wgpu::ComputePipeline,
     layout: wgpu::BindGroupLayout,
-    bindings: Vec<u32>,
+    pub(crate) bindings: Vec<Binding>,
 }
 
 impl Stage {
-    /// Compiles this entry point of `module` with these constants; `bindings` are all that it uses.
+    /// Compiles this entry point of `module` with these constants.
     pub(crate) fn new(
         compiler: Compiler,
         module: &Parsed,
         entry_point: &str,
         constants: &[(&str, f64)],
-        bindings: &[(u32, Access)],
     ) -> Result<Self, Error> {
         let device = compiler.device;
-        let entry = |&(binding, access): &(u32, Access)| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty: access.binding_type(),
-            count: None,
-        };
-        debug_assert!(bindings.iter().filter(|(_, access)| access.is_texture()).count() <= MAX_TEXTURES as usize);
+        let (module, bindings) = compiler.module(module, entry_point, constants)?;
+        let count = |is: fn(&Binding) -> bool| bindings.iter().filter(|binding| is(binding)).count();
+        debug_assert!(count(Binding::is_texture) <= MAX_TEXTURES as usize);
         let most = device.raw.limits().max_storage_buffers_per_shader_stage;
-        let buffers = bindings.iter().filter(|(_, access)| matches!(access, Access::Read | Access::ReadWrite)).count();
+        let buffers = count(Binding::is_storage_buffer);
         if buffers > most as usize {
             let limit = format!("max_storage_buffers_per_shader_stage is {most}, and it uses {buffers}");
             return Err(Error::too_large(&device.info, entry_point, limit));
         }
+        let entry = |binding: &Binding| wgpu::BindGroupLayoutEntry {
+            binding: binding.number,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty: binding.ty,
+            count: None,
+        };
         let entries: Vec<_> = bindings.iter().map(entry).collect();
-        let mut bindings: Vec<_> = bindings.iter().map(|(binding, _)| *binding).collect();
-        bindings.sort_unstable();
-        let module = compiler.module(module, entry_point, constants, &bindings)?;
         device.checked("compiling the kernels", || {
             let descriptor = wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries };
             let layout = device.raw.create_bind_group_layout(&descriptor);
@@ -134,12 +93,13 @@ impl Stage {
         })
     }
 
-    /// Binds those of `resources` that the kernel uses.
-    pub(crate) fn bind(&self, device: &Device, resources: &[(u32, Resource)]) -> wgpu::BindGroup {
-        let used = resources.iter().filter(|(binding, _)| self.bindings.contains(binding));
-        let entries: Vec<_> = used
-            .map(|(binding, resource)| wgpu::BindGroupEntry { binding: *binding, resource: resource.as_binding() })
-            .collect();
+    /// Binds those of `resources` that the kernel uses, by the names of its variables.
+    pub(crate) fn bind(&self, device: &Device, resources: &[(&str, Resource)]) -> wgpu::BindGroup {
+        let entry = |binding: &Binding| {
+            let (_, resource) = resources.iter().find(|(name, _)| *name == binding.name)?;
+            Some(wgpu::BindGroupEntry { binding: binding.number, resource: resource.as_binding() })
+        };
+        let entries: Vec<_> = self.bindings.iter().filter_map(entry).collect();
         let descriptor = wgpu::BindGroupDescriptor { label: None, layout: &self.layout, entries: &entries };
         device.raw.create_bind_group(&descriptor)
     }

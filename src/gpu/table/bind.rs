@@ -8,16 +8,16 @@ use crate::gpu::device::open::Device;
 use crate::gpu::device::upload::{max_texels, upload, upload_texels};
 use crate::gpu::kernel::shader::Textures;
 use crate::gpu::kernel::specialisation::Specialisation;
-use crate::gpu::kernel::stage::{Resource, table_usage};
+use crate::gpu::kernel::stage::{Resource, Resources, table_usage};
 
-/// The textures of the lists, by binding.
+/// The textures of the lists, by name.
 pub(crate) fn list_resources(
     device: &Device,
     textures: Textures,
     [cells, entries]: &[Contents; 2],
-) -> Result<Vec<(u32, Resource)>, Error> {
+) -> Result<Resources, Error> {
     let texels = |contents| upload_texels(device, contents, 2, table_usage(textures)).map(Resource::Texels);
-    Ok(vec![(13, texels(cells)?), (17, texels(entries)?)])
+    Ok(vec![("cells", texels(cells)?), ("entries", texels(entries)?)])
 }
 
 /// Whether the device has room for the shapes in the order of the grid's lists.
@@ -26,14 +26,14 @@ pub(crate) fn copies_fit(device: &Device, packed: &Packed, accel: &Acceleration)
     (entries * packed.shapes[0].element_size()) as u64 <= max_texels(device, 16)
 }
 
-/// The textures of the shapes in the order of the grid's lists, by binding, where kernels read them so.
+/// The textures of the shapes in the order of the grid's lists, by name, where kernels read them so.
 pub(crate) fn copy_resources(
     device: &Device,
     textures: Textures,
     packed: &Packed,
     accel: &Acceleration,
     specialisation: &Specialisation,
-) -> Result<Vec<(u32, Resource)>, Error> {
+) -> Result<Resources, Error> {
     let Some(grid) = accel.grid.as_ref().filter(|_| specialisation.variant().copies()) else { return Ok(Vec::new()) };
     let texels = |half: &Contents, entries: &[u32]| {
         // Packed once: to pack the spheres in any order takes far longer than to copy them so.
@@ -46,16 +46,16 @@ pub(crate) fn copy_resources(
     let ends = if specialisation.reads_shape_ends() { &entries[..] } else { &[] };
     let none = Contents::none();
     let second = if ends.is_empty() { &none } else { second };
-    Ok(vec![(24, texels(first, entries)?), (25, texels(second, ends)?)])
+    Ok(vec![("grid_shapes", texels(first, entries)?), ("grid_shape_ends", texels(second, ends)?)])
 }
 
-/// The buffers and textures of the scene, by binding, beside those of the lists.
+/// The buffers and textures of the scene, by name, beside those of the lists.
 pub(crate) fn scene_resources(
     device: &Device,
     textures: Textures,
     packed: &Packed,
     specialisation: &Specialisation,
-) -> Result<Vec<(u32, Resource)>, Error> {
+) -> Result<Resources, Error> {
     let (storage, uniform) = (wgpu::BufferUsages::STORAGE, wgpu::BufferUsages::UNIFORM);
     // A binding of size 0 is not allowed.
     let filled =
@@ -64,19 +64,23 @@ pub(crate) fn scene_resources(
     let none = Contents::none();
     let second_half = |half| texels(if specialisation.reads_shape_ends() { half } else { &none });
     let mut resources = vec![
-        (0, filled(&packed.params, uniform)?),
-        (1, texels(&packed.shapes[0])?),
-        (20, second_half(&packed.shapes[1])?),
-        (2, texels(&packed.materials)?),
-        (3, texels(&packed.lights)?),
-        (4, texels(&packed.window)?),
-        (14, texels(&packed.faces)?),
+        ("given_params", filled(&packed.params, uniform)?),
+        ("shapes", texels(&packed.shapes[0])?),
+        ("shape_ends", second_half(&packed.shapes[1])?),
+        ("materials", texels(&packed.materials)?),
+        ("lights", texels(&packed.lights)?),
+        ("window", texels(&packed.window)?),
+        ("faces", texels(&packed.faces)?),
     ];
     if specialisation.refraction.is_some() {
-        resources.push((5, filled(&packed.glasses, storage)?));
+        resources.push(("glasses", filled(&packed.glasses, storage)?));
     }
     if let Some(([first, second], lights)) = &packed.low {
-        resources.extend([(9, texels(first)?), (21, second_half(second)?), (10, texels(lights)?)]);
+        resources.extend([
+            ("shapes_low", texels(first)?),
+            ("shape_ends_low", second_half(second)?),
+            ("lights_low", texels(lights)?),
+        ]);
     }
     Ok(resources)
 }
