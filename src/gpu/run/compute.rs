@@ -38,9 +38,10 @@ impl Job<'_> {
         let results = device.checked(self.what, || {
             let results = Readable::new(device, self.output_len as u64);
             let mut resources = vec![(self.output, Resource::Buffer(results.buffer.clone()))];
-            let inputs = self.inputs.iter();
-            let inputs = inputs.filter_map(|input| Some((input, stage.bindings.iter().find(|it| it.name == input.0)?)));
-            for (&(name, contents), binding) in inputs {
+            for binding in &stage.bindings {
+                // There is one more than the inputs: the output.
+                let input = self.inputs.iter().find(|(name, _)| *name == binding.name);
+                let Some(&(name, contents)) = input else { continue };
                 let buffer = |usage| Ok(Resource::Buffer(small_buffer(device, contents, usage)));
                 let texels = |usage| texels(device, &Contents::packed(contents), 4, usage).map(Resource::Texels);
                 let resource = match binding.ty {

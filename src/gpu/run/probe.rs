@@ -214,7 +214,7 @@ pub struct Prober<'a> {
 }
 
 impl<'a> Prober<'a> {
-    /// Composes the module; [`Error::ArithmeticRefused`] where the device's is not that of the tier.
+    /// Composes the module; [`Error::ArithmeticRefused`] where the device's arithmetic is not what the tier promises.
     pub fn new(gpu: &'a Gpu, kernel: Kernel) -> Result<Self, Error> {
         let kernel = match kernel {
             Kernel::Tier(tier) => gpu.kernel(tier)?,
