@@ -1,5 +1,5 @@
 // Every field that the host packs, read on the device and written back for the host to compare: the third lock on the layout.
-// needs: real, scene, types
+// needs: real, scene, tables, types
 
 @group(0) @binding(21) var<storage, read_write> results: array<u32>;
 
@@ -61,8 +61,8 @@ fn echo_layout() {
         echo3(material_of(i).scale);
     }
     for (var i = 0u; i < params.light_count; i++) {
-        echo3(light_in_table(i).position);
-        echo3(light_in_table(i).intensity);
+        echo3(light_at(i).position);
+        echo3(light_at(i).intensity);
     }
     echo3(window_at(2u));
     echo3(window_at(params.window_rows + 2u));

@@ -96,3 +96,22 @@ impl From<OutputError> for Failure {
         Self::new(OUTPUT, error.to_string())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn causes_end_with_the_documented_codes() {
+        let (device, tuning) = (String::from("card"), String::from("paths 8"));
+        for (error, code) in [
+            (gpu::Error::NotFound("none of that name".into()), NO_DEVICE),
+            (gpu::Error::Cut { device: device.clone(), pixels: 1 }, NO_DEVICE),
+            (gpu::Error::OtherPicture { device, tuning }, DEVICE_LOST),
+            (gpu::Error::Shader("a token".into()), DEVICE_LOST),
+            (gpu::Error::Misuse(Misuse::Batch("no lights".into())), USAGE),
+        ] {
+            assert_eq!(Failure::from(error.clone()).code, code, "{error:?}");
+        }
+    }
+}

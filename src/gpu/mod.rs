@@ -1,7 +1,7 @@
 //! The GPU path: a WGSL compute shader on any Vulkan device.
 //!
-//! Floors, each of which knows those before it alone: `device` knows no kernel, `kernel` no scene in memory, `table` no renderer;
-//! [`Gpu`] holds a device with its kernels, and on it stand `render` and `run`.
+//! Floors, each of which knows those before it alone: `device` knows no kernel, `kernel` none of the tables that it reads, `table`
+//! no renderer; [`Gpu`] holds a device with its kernels, and on it stand `render` and `run`.
 
 mod device;
 mod facade;

@@ -27,7 +27,7 @@ use crate::gpu::facade::Gpu;
 use crate::gpu::kernel::pipeline::Bounce;
 use crate::gpu::kernel::shader::{Kernel, Slots, Variant, Walk};
 use crate::gpu::kernel::specialisation::Specialisation;
-use crate::gpu::kernel::stage::{Resource, Stage};
+use crate::gpu::kernel::stage::{Resources, Stage};
 use crate::gpu::table::bind::{are_too_large, check_fits, copies_fit, copy_resources, list_resources, scene_resources};
 use crate::gpu::table::pack::{Packed, list_contents};
 use crate::limits;
@@ -131,8 +131,7 @@ pub struct GpuRenderer<'a, O = Rows> {
 /// Everything that is needed to build the kernels once a tile asks for them.
 #[derive(Debug)]
 struct Inputs {
-    /// By binding.
-    resources: Vec<(u32, Resource)>,
+    resources: Resources,
     specialisation: Specialisation,
 }
 

@@ -24,6 +24,7 @@ mod film;
 mod fuzz;
 mod golden;
 mod heads;
+mod house;
 mod keys;
 mod library;
 mod lists;

@@ -141,8 +141,8 @@ fn kernels_have_no_branch_that_is_known() {
 
 /// The SPIR-V of this entry point.
 fn kernel(module: &Parsed, entry_point: &str, constants: &[(&str, f64)]) -> dr::Module {
-    let bindings: Vec<u32> = (0..32).collect();
-    dr::load_words(module.spirv(entry_point, constants, &bindings).unwrap()).unwrap()
+    let specialised = module.specialised(entry_point, constants).unwrap();
+    dr::load_words(module.spirv(&specialised, entry_point).unwrap()).unwrap()
 }
 
 /// Every kernel that the kinds have with these flags, with all effects and with few.

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use super::bindings::Binding;
 use super::cache::KernelCache;
 use super::spirv::Parsed;
 use crate::gpu::device::error::Error;
@@ -15,19 +16,20 @@ pub(crate) struct Compiler<'a> {
 }
 
 impl Compiler<'_> {
-    /// The module of one kernel.
+    /// The module of one kernel, and what it reads and writes.
     pub(super) fn module(
         self,
         module: &Parsed,
         entry_point: &str,
         constants: &[(&str, f64)],
-        bindings: &[u32],
-    ) -> Result<wgpu::ShaderModule, Error> {
+    ) -> Result<(wgpu::ShaderModule, Vec<Binding>), Error> {
+        let specialised = module.specialised(entry_point, constants).map_err(Error::Shader)?;
+        let bindings = Binding::all(&specialised).map_err(Error::Shader)?;
         if !self.device.takes_spirv {
-            return self.translated(module.specialised(entry_point, constants).map_err(Error::Shader)?);
+            return Ok((self.translated(specialised)?, bindings));
         }
-        let words = module.spirv(entry_point, constants, bindings).map_err(Error::Shader)?;
-        self.device.checked("reading the shader", || {
+        let words = module.spirv(&specialised, entry_point).map_err(Error::Shader)?;
+        let module = self.device.checked("reading the shader", || {
             #[allow(
                 unsafe_code,
                 reason = "naga has validated the module; in its SPIR-V, which has some decorations more, functions stand in the \
@@ -45,7 +47,8 @@ impl Compiler<'_> {
                     ..Default::default()
                 })
             }
-        })
+        })?;
+        Ok((module, bindings))
     }
 
     /// The module as wgpu translates it, which leaves to the driver what it fuses.

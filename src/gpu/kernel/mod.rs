@@ -1,6 +1,7 @@
 //! From variants and constants to compiled kernels: what a device is told to do, but not with what.
 
 pub(crate) mod ahead;
+pub(crate) mod bindings;
 pub mod cache;
 pub(crate) mod compiler;
 mod compose;

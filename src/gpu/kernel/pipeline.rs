@@ -1,11 +1,10 @@
 //! The kernels of a picture, compiled side by side.
 
 use super::compiler::Compiler;
-use super::shader::{Module, Slots, Storage, Walk};
+use super::shader::{Module, Slots, Walk};
 use super::specialisation::Specialisation;
 use super::spirv::Parsed;
-use super::stage::Access::{Kept, Read, ReadWrite, Table, Uniform};
-use super::stage::{Access, Stage};
+use super::stage::Stage;
 use crate::gpu::device::error::Error;
 use crate::threads::at_once;
 
@@ -58,62 +57,33 @@ pub(crate) fn compile(
         own = parsed(&specialisation.module())?;
         &own
     };
-    let [words, pairs, vectors] = [1, 2, 4].map(|components| match specialisation.storage {
-        Storage::Tables(tables) => Table(tables, components),
-        Storage::Ranges => Read,
-    });
-    let [kept_words, kept_vectors] = [1, 4].map(|components| match specialisation.storage {
-        Storage::Tables(tables) => Kept(tables, components),
-        Storage::Ranges => ReadWrite,
-    });
-    // What every stage reads and writes.
-    let mut common = vec![(0, Uniform), (7, ReadWrite), (8, ReadWrite), (13, pairs), (17, pairs)];
-    common.extend([1, 2, 3, 14, 20].map(|binding| (binding, vectors)));
-    if specialisation.kernel.carries_low() {
-        common.extend([9, 10, 21].map(|binding| (binding, vectors)));
-    }
-    if specialisation.refraction.is_some() {
-        common.push((5, Read));
-    }
-    if specialisation.keeps_paths() {
-        common.extend([(12, ReadWrite), (18, kept_vectors), (19, Uniform)]);
-    }
-    let (see_entry, places) = match specialisation.slots {
-        Slots::Tiles => (SEE_TILES, Uniform),
-        Slots::List => (SEE_SAMPLES, Read),
+    let kernel = |entry_point| Stage::new(compiler, module, entry_point, &constants);
+    let other = |module: &Module, entry_point, names: &[&str]| {
+        let constants: Vec<_> = constants.iter().copied().filter(|(name, _)| names.contains(name)).collect();
+        Stage::new(compiler, &parsed(module)?, entry_point, &constants)
     };
-    common.push((6, places));
-    let primary = [(4, vectors)];
-    let kernel = |entry_point, own: &[(u32, Access)]| {
-        Stage::new(compiler, module, entry_point, &constants, &[&common[..], own].concat())
+    let between = || other(&Module::between_stages(), BEGIN_BOUNCE, &["GROUP", "PATHS"]);
+    let resolve = || match specialisation.samples {
+        1 => Ok(None),
+        _ => other(&Module::resolve(specialisation.kernel), RESOLVE, &["SAMPLES"]).map(Some),
     };
-    let between = || {
-        let module = parsed(&Module::between_stages())?;
-        Stage::new(compiler, &module, BEGIN_BOUNCE, &constants, &[(12, ReadWrite), (16, ReadWrite)])
-    };
-    let resolve = || {
-        if specialisation.samples == 1 {
-            return Ok(None);
-        }
-        let module = parsed(&Module::resolve(specialisation.kernel))?;
-        Stage::new(compiler, &module, RESOLVE, &constants, &[(0, Uniform), (7, Read), (15, ReadWrite)]).map(Some)
-    };
-    let copies: &[(u32, Access)] =
-        if specialisation.variant().copies() { &[(24, vectors), (25, vectors)] } else { &[] };
     // A driver compiles a kernel on the thread that asks for it: side by side. The largest one goes here, since allocating is
     // cheapest on the main thread.
-    let see = || kernel(see_entry, &primary);
+    let see = || match specialisation.slots {
+        Slots::Tiles => kernel(SEE_TILES),
+        Slots::List => kernel(SEE_SAMPLES),
+    };
     if !specialisation.keeps_paths() {
         return Ok(Stages { see: see()?, bounce: None, resolve: resolve()? });
     }
     let bounce = || -> Result<Bounce, Error> {
         if let Walk::InTurn(_) = specialisation.walk {
-            let shade = || compiler.device.guarded(|| kernel(SHADE_PATHS, &[(11, vectors), (22, words)]));
-            let walk = || kernel(WALK_PATHS, &[&[(11, vectors), (23, kept_words)][..], copies].concat());
+            let shade = || compiler.device.guarded(|| kernel(SHADE_PATHS));
+            let walk = || kernel(WALK_PATHS);
             let (shade, (walk, begin)) = at_once(shade, || (walk(), between()));
             Ok(Bounce { begin: begin?, walk: walk?, shade: Some(shade?) })
         } else {
-            Ok(Bounce { begin: between()?, walk: kernel(WALK_PATHS, &[(11, vectors)])?, shade: None })
+            Ok(Bounce { begin: between()?, walk: kernel(WALK_PATHS)?, shade: None })
         }
     };
     let (see, (bounce, resolve)) = at_once(|| compiler.device.guarded(see), || (bounce(), resolve()));

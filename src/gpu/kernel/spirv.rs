@@ -6,6 +6,8 @@
 //! written out, since drivers choose themselves how to expand them. What is left to the device is how it divides and takes square
 //! roots, which Vulkan lets be some units in the last place off.
 
+use std::collections::BTreeSet;
+
 use naga::back::spv;
 use naga::compact::{KeepUnused, compact};
 use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
@@ -71,15 +73,14 @@ impl Parsed {
         Ok(module)
     }
 
-    /// The SPIR-V of this kernel. `bindings` are those of its layout, in ascending order.
-    pub fn spirv(&self, entry_point: &str, constants: &[(&str, f64)], bindings: &[u32]) -> Result<Vec<u32>, String> {
-        let module = self.specialised(entry_point, constants)?;
-        let info = validated(&module, ValidationFlags::all())?;
-        // wgpu numbers the bindings of a layout anew.
-        let places = bindings.iter().zip(0..).map(|(&binding, place)| {
-            let place = spv::BindingInfo { descriptor_set: 0, binding: place, binding_array_size: None };
-            (ResourceBinding { group: 0, binding }, place)
-        });
+    /// The SPIR-V of this entry point of `module`, which is this one specialised.
+    pub fn spirv(&self, module: &naga::Module, entry_point: &str) -> Result<Vec<u32>, String> {
+        let info = validated(module, ValidationFlags::all())?;
+        // wgpu numbers the bindings of a layout anew, in their order.
+        let bound: BTreeSet<ResourceBinding> =
+            module.global_variables.iter().filter_map(|(_, it)| it.binding).collect();
+        let place = |place| spv::BindingInfo { descriptor_set: 0, binding: place, binding_array_size: None };
+        let places = bound.into_iter().zip((0..).map(place));
         // Checks cost up to 30 %: every index is below a length that the host set with the buffers, every loop counts up to a
         // bound, no integer is divided by 0.
         let unchecked = BoundsCheckPolicy::Unchecked;
@@ -101,7 +102,7 @@ impl Parsed {
             ..spv::Options::default()
         };
         let entry = spv::PipelineOptions { shader_stage: ShaderStage::Compute, entry_point: entry_point.to_owned() };
-        let words = spv::write_vec(&module, &info, &options, Some(&entry)).map_err(|error| error.to_string())?;
+        let words = spv::write_vec(module, &info, &options, Some(&entry)).map_err(|error| error.to_string())?;
         let mut module = dr::load_words(words).map_err(|error| error.to_string())?;
         inline_calls(&mut module);
         expand_products(&mut module);

@@ -1,68 +1,17 @@
 //! A compiled kernel: the only place that makes pipelines, for pictures and for everything else.
 
+use super::bindings::Binding;
 use super::cache::KernelCache;
 use super::compiler::Compiler;
-use super::shader::Tables;
 use super::spirv::Parsed;
 use crate::gpu::device::calls::Call;
 use crate::gpu::device::error::Error;
 use crate::gpu::device::open::Device;
-use crate::gpu::device::upload::texel_format;
 
 /// Tables that a kernel reads and writes at the most, whatever it is specialised for.
 pub(crate) const MAX_TABLES: u32 = 13;
 /// Buffers besides.
 pub(crate) const MAX_BUFFERS: u32 = 4;
-
-/// How a binding is used.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Access {
-    Uniform,
-    Read,
-    ReadWrite,
-    /// A table that is read; as a texture it has so many `u32` a texel.
-    Table(Tables, u32),
-    /// Likewise, and it is written.
-    Kept(Tables, u32),
-}
-
-impl Access {
-    fn binding_type(self) -> wgpu::BindingType {
-        let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
-        let view_dimension = wgpu::TextureViewDimension::D2;
-        let storage_texture = |access, components| wgpu::BindingType::StorageTexture {
-            access,
-            format: texel_format(components),
-            view_dimension,
-        };
-        match self {
-            Self::Uniform => buffer(wgpu::BufferBindingType::Uniform),
-            Self::Read | Self::Table(Tables::Buffers, _) => {
-                buffer(wgpu::BufferBindingType::Storage { read_only: true })
-            }
-            Self::ReadWrite | Self::Kept(Tables::Buffers, _) => {
-                buffer(wgpu::BufferBindingType::Storage { read_only: false })
-            }
-            Self::Table(Tables::Sampled, _) => wgpu::BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Uint,
-                view_dimension,
-                multisampled: false,
-            },
-            Self::Table(Tables::Stored, components) => {
-                storage_texture(wgpu::StorageTextureAccess::ReadOnly, components)
-            }
-            Self::Kept(_, components) => storage_texture(wgpu::StorageTextureAccess::WriteOnly, components),
-        }
-    }
-
-    fn is_table(self) -> bool {
-        matches!(self, Self::Table(..) | Self::Kept(..))
-    }
-
-    fn is_storage_buffer(self) -> bool {
-        matches!(self.binding_type(), wgpu::BindingType::Buffer { ty: wgpu::BufferBindingType::Storage { .. }, .. })
-    }
-}
 
 /// What a binding is bound to.
 #[derive(Debug, Clone)]
@@ -70,6 +19,9 @@ pub(crate) enum Resource {
     Buffer(wgpu::Buffer),
     Texels(wgpu::TextureView),
 }
+
+/// Resources by the names of the variables that they are bound to.
+pub(crate) type Resources = Vec<(&'static str, Resource)>;
 
 impl Resource {
     fn as_binding(&self) -> wgpu::BindingResource<'_> {
@@ -85,36 +37,34 @@ impl Resource {
 pub(crate) struct Stage {
     pub(crate) pipeline: wgpu::ComputePipeline,
     layout: wgpu::BindGroupLayout,
-    bindings: Vec<u32>,
+    pub(crate) bindings: Vec<Binding>,
 }
 
 impl Stage {
-    /// Compiles this entry point of `module` with these constants; `bindings` are all that it uses.
+    /// Compiles this entry point of `module` with these constants.
     pub(crate) fn new(
         compiler: Compiler,
         module: &Parsed,
         entry_point: &str,
         constants: &[(&str, f64)],
-        bindings: &[(u32, Access)],
     ) -> Result<Self, Error> {
         let device = compiler.device;
-        let entry = |&(binding, access): &(u32, Access)| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty: access.binding_type(),
-            count: None,
-        };
-        debug_assert!(bindings.iter().filter(|(_, access)| access.is_table()).count() <= MAX_TABLES as usize);
+        let (module, bindings) = compiler.module(module, entry_point, constants)?;
+        let count = |is: fn(&Binding) -> bool| bindings.iter().filter(|binding| is(binding)).count();
+        debug_assert!(count(Binding::is_texture) <= MAX_TABLES as usize);
         let most = device.raw.limits().max_storage_buffers_per_shader_stage;
-        let buffers = bindings.iter().filter(|(_, access)| access.is_storage_buffer()).count();
+        let buffers = count(Binding::is_storage_buffer);
         if buffers > most as usize {
             let limit = format!("max_storage_buffers_per_shader_stage is {most}, and it uses {buffers}");
             return Err(Error::too_large(&device.info, entry_point, limit));
         }
+        let entry = |binding: &Binding| wgpu::BindGroupLayoutEntry {
+            binding: binding.number,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty: binding.ty,
+            count: None,
+        };
         let entries: Vec<_> = bindings.iter().map(entry).collect();
-        let mut bindings: Vec<_> = bindings.iter().map(|(binding, _)| *binding).collect();
-        bindings.sort_unstable();
-        let module = compiler.module(module, entry_point, constants, &bindings)?;
         device.checked("compiling the kernels", || {
             let descriptor = wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries };
             let layout = device.raw.create_bind_group_layout(&descriptor);
@@ -136,12 +86,13 @@ impl Stage {
         })
     }
 
-    /// Binds those of `resources` that the kernel uses.
-    pub(crate) fn bind(&self, device: &Device, resources: &[(u32, Resource)]) -> wgpu::BindGroup {
-        let used = resources.iter().filter(|(binding, _)| self.bindings.contains(binding));
-        let entries: Vec<_> = used
-            .map(|(binding, resource)| wgpu::BindGroupEntry { binding: *binding, resource: resource.as_binding() })
-            .collect();
+    /// Binds those of `resources` that the kernel uses, by the names of its variables.
+    pub(crate) fn bind(&self, device: &Device, resources: &[(&str, Resource)]) -> wgpu::BindGroup {
+        let entry = |binding: &Binding| {
+            let (_, resource) = resources.iter().find(|(name, _)| *name == binding.name)?;
+            Some(wgpu::BindGroupEntry { binding: binding.number, resource: resource.as_binding() })
+        };
+        let entries: Vec<_> = self.bindings.iter().filter_map(entry).collect();
         let descriptor = wgpu::BindGroupDescriptor { label: None, layout: &self.layout, entries: &entries };
         device.raw.create_bind_group(&descriptor)
     }

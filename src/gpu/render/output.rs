@@ -26,8 +26,9 @@ impl Output for Pixels {
     const SLOTS: Slots = Slots::List;
 }
 
+impl sealed::Sealed for Rows {}
+impl sealed::Sealed for Pixels {}
+
 mod sealed {
     pub trait Sealed {}
-    impl Sealed for super::Rows {}
-    impl Sealed for super::Pixels {}
 }

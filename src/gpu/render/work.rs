@@ -50,7 +50,7 @@ impl Work {
     pub(super) fn new(
         gpu: &Gpu,
         stages: Arc<Stages>,
-        resources: &[(u32, Resource)],
+        resources: &[(&'static str, Resource)],
         capacity: u32,
         specialisation: &Specialisation,
         has_bounces: bool,
@@ -75,21 +75,30 @@ impl Work {
         let stage = empty(STAGE_SIZE, storage | copied);
         let workgroups = empty(WORKGROUPS_SIZE, storage | wgpu::BufferUsages::INDIRECT);
         let colors = stages.resolve.as_ref().map(|_| empty(slots * specialisation.color_size(), storage));
-        let results = colors.as_ref().unwrap_or(&pixels.buffer);
         let mut all = resources.to_vec();
-        let mut bind = |binding, buffer: &wgpu::Buffer| all.push((binding, Resource::Buffer(buffer.clone())));
-        bind(6, &tiles);
-        bind(7, results);
-        bind(8, &ray_counts.buffer);
-        bind(12, &stage);
-        bind(15, &pixels.buffer);
-        bind(16, &workgroups);
+        let mut bind = |name, buffer: &wgpu::Buffer| all.push((name, Resource::Buffer(buffer.clone())));
+        bind("tiles", &tiles);
+        bind("list", &tiles);
+        bind("ray_counts", &ray_counts.buffer);
+        bind("stage", &stage);
+        bind("pixels", &pixels.buffer);
+        bind("workgroups", &workgroups);
+        if let Some(colors) = &colors {
+            bind("colors", colors);
+        }
         let has_next =
             [0_u32, 1].map(|has_next| small_buffer(device, bytemuck::bytes_of(&has_next), wgpu::BufferUsages::UNIFORM));
         let turn = |stage: &Stage, from: usize, goes_on: usize| {
             let [from, to] = [from, 1 - from].map(|half| paths[half].clone());
             let has_next = Resource::Buffer(has_next[goes_on].clone());
-            let turn = [(11, from), (18, to), (19, has_next), (22, hits.clone()), (23, hits.clone())];
+            let hits = hits.clone();
+            let turn = [
+                ("paths", from),
+                ("next_paths", to),
+                ("has_next", has_next),
+                ("hits", hits.clone()),
+                ("kept_hits", hits),
+            ];
             stage.bind(device, &[&all[..], &turn].concat())
         };
         let see_group = turn(&stages.see, 1, usize::from(has_bounces));

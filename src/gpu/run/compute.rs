@@ -3,12 +3,11 @@
 use crate::gpu::device::contents::Contents;
 use crate::gpu::device::error::Error;
 use crate::gpu::device::readable::Readable;
-use crate::gpu::device::upload::small_buffer;
+use crate::gpu::device::upload::{small_buffer, texels};
 use crate::gpu::kernel::compiler::Compiler;
 use crate::gpu::kernel::shader::Module;
 use crate::gpu::kernel::spirv::Parsed;
-use crate::gpu::kernel::stage::{Access, Resource, Stage};
-use crate::gpu::table::bind::table;
+use crate::gpu::kernel::stage::{Resource, Stage};
 
 /// A kernel with its buffers.
 pub(super) struct Job<'a> {
@@ -16,10 +15,10 @@ pub(super) struct Job<'a> {
     pub(super) what: &'a str,
     pub(super) module: &'a Module,
     pub(super) entry_point: &'a str,
-    /// Binding, use and contents of each input that the kernel reads.
-    pub(super) inputs: &'a [(u32, Access, &'a [u8])],
-    /// Binding of the output, an `array<u32>`.
-    pub(super) output: u32,
+    /// Contents of each variable that the kernel reads; tables have four `u32` a texel.
+    pub(super) inputs: &'a [(&'a str, &'a [u8])],
+    /// The output, an `array<u32>`.
+    pub(super) output: &'a str,
     /// Values in the output.
     pub(super) output_len: usize,
     /// Number of workgroups.
@@ -34,23 +33,26 @@ impl Job<'_> {
 
     fn run_once(&self, compiler: Compiler) -> Result<Vec<u32>, Error> {
         let module = Parsed::new(self.module).map_err(Error::Shader)?;
-        let inputs = self.inputs.iter().map(|&(binding, access, _)| (binding, access));
-        let bindings: Vec<_> = inputs.chain([(self.output, Access::ReadWrite)]).collect();
-        let stage = Stage::new(compiler, &module, self.entry_point, &[], &bindings)?;
+        let stage = Stage::new(compiler, &module, self.entry_point, &[])?;
         let device = compiler.device;
         let results = device.checked(self.what, || {
             let results = Readable::new(device, self.output_len as u64);
             let mut resources = vec![(self.output, Resource::Buffer(results.buffer.clone()))];
-            for &(binding, access, contents) in self.inputs {
-                let buffer = |usage| Resource::Buffer(small_buffer(device, contents, usage));
-                let resource = match access {
-                    Access::Uniform => buffer(wgpu::BufferUsages::UNIFORM),
-                    Access::Read | Access::ReadWrite => buffer(wgpu::BufferUsages::STORAGE),
-                    Access::Table(tables, components) | Access::Kept(tables, components) => {
-                        table(device, tables, &Contents::packed(contents), components)?
+            for binding in &stage.bindings {
+                // There is one more than the inputs: the output.
+                let input = self.inputs.iter().find(|(name, _)| *name == binding.name);
+                let Some(&(name, contents)) = input else { continue };
+                let buffer = |usage| Ok(Resource::Buffer(small_buffer(device, contents, usage)));
+                let texels = |usage| texels(device, &Contents::packed(contents), 4, usage).map(Resource::Texels);
+                let resource = match binding.ty {
+                    wgpu::BindingType::Buffer { ty: wgpu::BufferBindingType::Uniform, .. } => {
+                        buffer(wgpu::BufferUsages::UNIFORM)
                     }
+                    wgpu::BindingType::Buffer { .. } => buffer(wgpu::BufferUsages::STORAGE),
+                    wgpu::BindingType::StorageTexture { .. } => texels(wgpu::TextureUsages::STORAGE_BINDING),
+                    _ => texels(wgpu::TextureUsages::TEXTURE_BINDING),
                 };
-                resources.push((binding, resource));
+                resources.push((name, resource?));
             }
             stage.dispatch(device, &stage.bind(device, &resources), [self.groups, 1]);
             Ok::<_, Error>(results)

@@ -7,7 +7,6 @@ use crate::effects::{EffectSet, Effects};
 use crate::gpu::device::error::Error;
 use crate::gpu::facade::Gpu;
 use crate::gpu::kernel::shader::{Kernel, Module};
-use crate::gpu::kernel::stage::Access;
 use crate::gpu::table::pack::Packed;
 use crate::misuse::{Misuse, check_picture};
 use crate::scene::Scene;
@@ -36,20 +35,19 @@ pub fn echo_layout(
     let accel = Acceleration::new(scene, &Camera::new(scene, settings), effects.set, kernel.rounding());
     let packed = Packed::new(scene, settings, effects, kernel, &accel, None, 0.25);
     let [head, sphere, light, tail] = COUNTS;
-    let table = Access::Table(gpu.tables(), 4);
     let job = Job {
         what: "echoing the layout",
         module: &Module::echo(kernel, gpu.tables()),
         entry_point: "echo_layout",
         inputs: &[
-            (0, Access::Uniform, &packed.params.bytes()),
-            (1, table, &packed.shapes[0].bytes()),
-            (20, table, &packed.shapes[1].bytes()),
-            (2, table, &packed.materials.bytes()),
-            (3, table, &packed.lights.bytes()),
-            (4, table, &packed.window.bytes()),
+            ("given_params", &packed.params.bytes()),
+            ("shapes", &packed.shapes[0].bytes()),
+            ("shape_ends", &packed.shapes[1].bytes()),
+            ("materials", &packed.materials.bytes()),
+            ("lights", &packed.lights.bytes()),
+            ("window", &packed.window.bytes()),
         ],
-        output: 21,
+        output: "results",
         output_len: head + sphere * scene.spheres.len() + light * scene.lights.len() + tail,
         groups: 1,
     };

@@ -11,7 +11,6 @@ use crate::gpu::facade::Gpu;
 use crate::gpu::kernel::compiler::Compiler;
 use crate::gpu::kernel::shader::Module;
 use crate::gpu::kernel::spirv::Parsed;
-use crate::gpu::kernel::stage::Access::{self, Read, ReadWrite, Uniform};
 use crate::gpu::kernel::stage::{Resource, Stage};
 use crate::misuse::check_colors;
 use crate::sampling::{Fill, NO_SAMPLE, Samples, flood_steps, packed};
@@ -31,8 +30,7 @@ impl<'a> Reconstructor<'a> {
     /// Compiles the kernel that finds nearest samples.
     pub fn new(gpu: &'a Gpu) -> Result<Self, Error> {
         let compiler = gpu.compiler();
-        let jump =
-            compiler.device.guarded(|| stage(compiler, &Module::flood(), "jump", &[Uniform, Read, ReadWrite]))?;
+        let jump = compiler.device.guarded(|| stage(compiler, &Module::flood(), "jump"))?;
         Ok(Self { compiler, jump, fills: HashMap::new() })
     }
 
@@ -58,9 +56,7 @@ impl<'a> Reconstructor<'a> {
         let owners = self.flood(samples)?;
         let kernel = match self.fills.entry(fill) {
             Entry::Occupied(entry) => entry.into_mut(),
-            Entry::Vacant(entry) => {
-                entry.insert(stage(self.compiler, &Module::fill(fill), "fill", &[Uniform, Read, Read, ReadWrite])?)
-            }
+            Entry::Vacant(entry) => entry.insert(stage(self.compiler, &Module::fill(fill), "fill")?),
         };
         let mut known = vec![0_u32; pixel_count(samples)];
         for (pixel, &[r, g, b]) in samples.pixels().iter().zip(colors) {
@@ -70,7 +66,8 @@ impl<'a> Reconstructor<'a> {
             let known = storage(device, &known);
             let picture = Readable::new(device, pixel_count(samples) as u64);
             let params = params(device, samples, 0);
-            let bound = [&params, &owners.buffer, &known, &picture.buffer];
+            let bound =
+                [("flood", &params), ("owners", &owners.buffer), ("known", &known), ("picture", &picture.buffer)];
             run(device, kernel, samples, &[bind(device, kernel, &bound)]);
             picture
         })?;
@@ -104,7 +101,11 @@ impl<'a> Reconstructor<'a> {
             let mut from = &first;
             for (pass, step) in flood_steps(samples.reach()).into_iter().enumerate() {
                 let to = &ends[pass % 2].buffer;
-                groups.push(bind(device, &self.jump, &[&params(device, samples, step), from, to]));
+                groups.push(bind(
+                    device,
+                    &self.jump,
+                    &[("flood", &params(device, samples, step)), ("owners", from), ("next_owners", to)],
+                ));
                 from = to;
             }
             run(device, &self.jump, samples, &groups);
@@ -135,16 +136,13 @@ fn storage(device: &Device, values: &[u32]) -> wgpu::Buffer {
     small_buffer(device, bytemuck::cast_slice(values), wgpu::BufferUsages::STORAGE)
 }
 
-/// A kernel whose bindings are used like this, in their order.
-fn stage(compiler: Compiler, module: &Module, entry_point: &str, uses: &[Access]) -> Result<Stage, Error> {
-    let bindings: Vec<_> = (0..).zip(uses.iter().copied()).collect();
-    Stage::new(compiler, &Parsed::new(module).map_err(Error::Shader)?, entry_point, &[], &bindings)
+fn stage(compiler: Compiler, module: &Module, entry_point: &str) -> Result<Stage, Error> {
+    Stage::new(compiler, &Parsed::new(module).map_err(Error::Shader)?, entry_point, &[])
 }
 
-/// Binds buffers in the order of their bindings.
-fn bind(device: &Device, stage: &Stage, buffers: &[&wgpu::Buffer]) -> wgpu::BindGroup {
-    let resources = buffers.iter().map(|&buffer| Resource::Buffer(buffer.clone()));
-    stage.bind(device, &(0..).zip(resources).collect::<Vec<_>>())
+fn bind(device: &Device, stage: &Stage, buffers: &[(&str, &wgpu::Buffer)]) -> wgpu::BindGroup {
+    let resources = buffers.iter().map(|&(name, buffer)| (name, Resource::Buffer(buffer.clone())));
+    stage.bind(device, &resources.collect::<Vec<_>>())
 }
 
 /// Runs a kernel over all pixels, once for each group.

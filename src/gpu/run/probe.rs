@@ -17,8 +17,7 @@ use crate::gpu::facade::Gpu;
 use crate::gpu::kernel::shader::{Kernel, Module, Places, Slots, Storage, Walk};
 use crate::gpu::kernel::specialisation::Specialisation;
 use crate::gpu::kernel::spirv::Parsed;
-use crate::gpu::kernel::stage::Access::{Read, ReadWrite, Uniform};
-use crate::gpu::kernel::stage::{Access, Resource, Stage};
+use crate::gpu::kernel::stage::{Resource, Stage};
 use crate::gpu::table::layout::{Layout, ListValues, ParamValues, ShapeValues, double, single};
 use crate::gpu::table::pack::{bytes, low_light, low_shape, shape_value};
 use crate::scene::{Light, Sphere};
@@ -172,20 +171,6 @@ impl Question {
         }
     }
 
-    /// What the entry point reads and writes, as in `shaders/`; with the low parts.
-    fn bindings(self, low: bool) -> Vec<(u32, Access)> {
-        let (plain, more): (&[u32], &[u32]) = match self {
-            Self::Nearest | Self::Blocked => (&[1, 13, 15], &[9, 14]),
-            Self::Lit | Self::Highlight { .. } => (&[1, 2, 3, 13, 15], &[9, 10, 14]),
-            Self::Point | Self::Bounce => (&[1, 2, 13, 15], &[9, 14]),
-            Self::Refract => (&[1, 2, 5, 13, 15], &[9, 14]),
-            Self::Power | Self::Transforms => (&[13], &[]),
-        };
-        let more = if low { more } else { &[] };
-        let read = plain.iter().chain(more).map(|&binding| (binding, Read));
-        read.chain([(0, Uniform), (16, ReadWrite), (17, ReadWrite)]).collect()
-    }
-
     /// Numbers of an answer.
     fn values(self) -> usize {
         match self {
@@ -229,7 +214,7 @@ pub struct Prober<'a> {
 }
 
 impl<'a> Prober<'a> {
-    /// Composes the module; [`Error::ArithmeticRefused`] where the device's is not that of the tier.
+    /// Composes the module; [`Error::ArithmeticRefused`] where the device's arithmetic is not what the tier promises.
     pub fn new(gpu: &'a Gpu, kernel: Kernel) -> Result<Self, Error> {
         let kernel = match kernel {
             Kernel::Tier(tier) => gpu.kernel(tier)?,
@@ -322,9 +307,8 @@ impl<'a> Prober<'a> {
             samples: 1,
             slots: Slots::Tiles,
         };
-        let bindings = question.bindings(self.kernel.carries_low());
         let constants = specialisation.constants();
-        let stage = Stage::new(self.gpu.compiler(), &self.module, question.entry_point(), &constants, &bindings)?;
+        let stage = Stage::new(self.gpu.compiler(), &self.module, question.entry_point(), &constants)?;
         self.stages.insert((question, ellipsoids), stage);
         Ok(())
     }
@@ -347,25 +331,25 @@ impl<'a> Prober<'a> {
         let size = question.values();
         let values = Readable::new(device, (padded * size * real / 4) as u64);
         let group = device.checked("reserving buffers", || {
-            let buffer = |(binding, contents, usage): (u32, &[u8], wgpu::BufferUsages)| {
+            let buffer = |(name, contents, usage): (&'static str, &[u8], wgpu::BufferUsages)| {
                 let contents = if contents.is_empty() { &[0; 256] } else { contents };
-                (binding, Resource::Buffer(small_buffer(device, contents, usage)))
+                (name, Resource::Buffer(small_buffer(device, contents, usage)))
             };
             let storage = wgpu::BufferUsages::STORAGE;
-            let inputs: [(u32, &[u8], wgpu::BufferUsages); 10] = [
-                (0, &params, wgpu::BufferUsages::UNIFORM),
-                (1, &inputs.shapes, storage),
-                (2, &inputs.materials, storage),
-                (3, &inputs.lights, storage),
-                (9, &inputs.shapes_low, storage),
-                (10, &inputs.lights_low, storage),
-                (5, &inputs.glasses, storage),
-                (13, &inputs.reals, storage),
-                (14, &inputs.reals_low, storage),
-                (15, bytemuck::cast_slice(&inputs.words), storage),
+            let inputs: [(&str, &[u8], wgpu::BufferUsages); 10] = [
+                ("given_params", &params, wgpu::BufferUsages::UNIFORM),
+                ("shapes", &inputs.shapes, storage),
+                ("materials", &inputs.materials, storage),
+                ("lights", &inputs.lights, storage),
+                ("shapes_low", &inputs.shapes_low, storage),
+                ("lights_low", &inputs.lights_low, storage),
+                ("glasses", &inputs.glasses, storage),
+                ("probe_reals", &inputs.reals, storage),
+                ("probe_low", &inputs.reals_low, storage),
+                ("probe_words", bytemuck::cast_slice(&inputs.words), storage),
             ];
-            let outputs = [(16, &flags), (17, &values)];
-            let outputs = outputs.map(|(binding, output)| (binding, Resource::Buffer(output.buffer.clone())));
+            let outputs = [("probe_flags", &flags), ("probe_values", &values)];
+            let outputs = outputs.map(|(name, output)| (name, Resource::Buffer(output.buffer.clone())));
             stage.bind(device, &inputs.into_iter().map(buffer).chain(outputs).collect::<Vec<_>>())
         })?;
         let start = Instant::now();

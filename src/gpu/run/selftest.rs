@@ -9,7 +9,6 @@ use crate::cache;
 use crate::gpu::device::error::Error;
 use crate::gpu::facade::Gpu;
 use crate::gpu::kernel::shader::{Kernel, Module};
-use crate::gpu::kernel::stage::Access;
 use crate::gpu::table::layout::single::Params;
 use crate::precision::Tier;
 
@@ -131,11 +130,8 @@ fn transform(gpu: &Gpu, operands: &[[f32; 2]]) -> Result<Vec<u32>, Error> {
         what: "the self-test of error-free transforms",
         module: &Module::selftest(),
         entry_point: "transform_pairs",
-        inputs: &[
-            (0, Access::Uniform, bytemuck::bytes_of(&params)),
-            (20, Access::Read, bytemuck::cast_slice(operands)),
-        ],
-        output: 21,
+        inputs: &[("given_params", bytemuck::bytes_of(&params)), ("operands", bytemuck::cast_slice(operands))],
+        output: "results",
         output_len: operands.len() * 4,
         groups: (PAIRS / GROUP) as u32,
     };

@@ -8,7 +8,7 @@ use crate::gpu::device::open::Device;
 use crate::gpu::device::upload::{empty_texels, max_texels, upload, upload_texels};
 use crate::gpu::kernel::shader::Tables;
 use crate::gpu::kernel::specialisation::Specialisation;
-use crate::gpu::kernel::stage::Resource;
+use crate::gpu::kernel::stage::{Resource, Resources};
 
 /// How textures that are tables are bound; `None` for tables in buffers.
 fn texture_usage(tables: Tables) -> Option<wgpu::TextureUsages> {
@@ -62,13 +62,13 @@ fn max_buffer(device: &Device) -> u64 {
     device.info.max_storage_binding.min(device.info.max_buffer)
 }
 
-/// The lists, by binding.
+/// The lists, by name.
 pub(crate) fn list_resources(
     device: &Device,
     tables: Tables,
     [cells, entries]: &[Contents; 2],
-) -> Result<Vec<(u32, Resource)>, Error> {
-    Ok(vec![(13, table(device, tables, cells, 2)?), (17, table(device, tables, entries, 2)?)])
+) -> Result<Resources, Error> {
+    Ok(vec![("cells", table(device, tables, cells, 2)?), ("entries", table(device, tables, entries, 2)?)])
 }
 
 /// Whether the device has room for the shapes in the order of the grid's lists.
@@ -77,14 +77,14 @@ pub(crate) fn copies_fit(device: &Device, tables: Tables, packed: &Packed, accel
     (entries * packed.shapes[0].element_size()) as u64 <= max_table(device, tables, 4)
 }
 
-/// The shapes in the order of the grid's lists, by binding, where kernels read them so.
+/// The shapes in the order of the grid's lists, by name, where kernels read them so.
 pub(crate) fn copy_resources(
     device: &Device,
     tables: Tables,
     packed: &Packed,
     accel: &Acceleration,
     specialisation: &Specialisation,
-) -> Result<Vec<(u32, Resource)>, Error> {
+) -> Result<Resources, Error> {
     let Some(grid) = accel.grid.as_ref().filter(|_| specialisation.variant().copies()) else { return Ok(Vec::new()) };
     let texels = |half: &Contents, entries: &[u32]| {
         // Packed once: to pack the spheres in any order takes far longer than to copy them so.
@@ -97,34 +97,38 @@ pub(crate) fn copy_resources(
     let ends = if specialisation.reads_shape_ends() { &entries[..] } else { &[] };
     let none = Contents::none();
     let second = if ends.is_empty() { &none } else { second };
-    Ok(vec![(24, texels(first, entries)?), (25, texels(second, ends)?)])
+    Ok(vec![("grid_shapes", texels(first, entries)?), ("grid_shape_ends", texels(second, ends)?)])
 }
 
-/// The buffers and textures of the scene, by binding, beside those of the lists.
+/// The buffers and textures of the scene, by name, beside those of the lists.
 pub(crate) fn scene_resources(
     device: &Device,
     tables: Tables,
     packed: &Packed,
     specialisation: &Specialisation,
-) -> Result<Vec<(u32, Resource)>, Error> {
+) -> Result<Resources, Error> {
     let params = upload(device, &packed.params, wgpu::BufferUsages::UNIFORM, packed.params.len())?;
     let vectors = |contents: &Contents| table(device, tables, contents, 4);
     let none = Contents::none();
     let second_half = |half| vectors(if specialisation.reads_shape_ends() { half } else { &none });
     let mut resources = vec![
-        (0, Resource::Buffer(params)),
-        (1, vectors(&packed.shapes[0])?),
-        (20, second_half(&packed.shapes[1])?),
-        (2, vectors(&packed.materials)?),
-        (3, vectors(&packed.lights)?),
-        (4, vectors(&packed.window)?),
-        (14, vectors(&packed.faces)?),
+        ("given_params", Resource::Buffer(params)),
+        ("shapes", vectors(&packed.shapes[0])?),
+        ("shape_ends", second_half(&packed.shapes[1])?),
+        ("materials", vectors(&packed.materials)?),
+        ("lights", vectors(&packed.lights)?),
+        ("window", vectors(&packed.window)?),
+        ("faces", vectors(&packed.faces)?),
     ];
     if specialisation.refraction.is_some() {
-        resources.push((5, storage_buffer(device, &packed.glasses)?));
+        resources.push(("glasses", storage_buffer(device, &packed.glasses)?));
     }
     if let Some(([first, second], lights)) = &packed.low {
-        resources.extend([(9, vectors(first)?), (21, second_half(second)?), (10, vectors(lights)?)]);
+        resources.extend([
+            ("shapes_low", vectors(first)?),
+            ("shape_ends_low", second_half(second)?),
+            ("lights_low", vectors(lights)?),
+        ]);
     }
     Ok(resources)
 }
