@@ -1,5 +1,6 @@
 // The nearest hit and any hit among those spheres that a ray can meet; read it beside src/accel and src/cpu/intersect.rs.
 // needs: body, counters, distance, effects, intersect, kernel, ray, real, scene, tables, types, vectors
+// host: REACH
 
 // One side of the cube of directions around a light: as in src/accel/light_buffer.rs.
 struct Face {
@@ -23,9 +24,6 @@ fn face_of(index: u32) -> Face {
     let words = texel_at(faces, at + TEXELS);
     return Face(place.xy, place.z, words.xy, words.z);
 }
-
-// Radii that a sphere reaches towards a light, rounding included: REACH in src/accel/light_buffer.rs.
-const REACH: real = real(1.01);
 
 // The nearer of a hit and the intersection with one more sphere; of equal ones the lower index.
 fn nearer_of(nearest: Hit, ray: Ray, body: Body, sphere: u32, exit: Exit, range: Range) -> Hit {

@@ -22,6 +22,7 @@ mod reconstruct;
 mod render;
 mod selftest;
 mod shader;
+mod shared;
 mod spirv;
 mod stage;
 mod tables;

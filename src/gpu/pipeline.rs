@@ -151,6 +151,17 @@ impl Specialisation {
         constants
     }
 
+    /// Those that the module of an entry point declares.
+    pub fn constants_of(&self, entry_point: &str) -> Vec<(&'static str, f64)> {
+        let mut constants = self.constants();
+        match entry_point {
+            BEGIN_BOUNCE => constants.retain(|(name, _)| ["GROUP", "PATHS"].contains(name)),
+            RESOLVE => constants.retain(|(name, _)| *name == "SAMPLES"),
+            _ => {}
+        }
+        constants
+    }
+
     /// Bytes that keep a path.
     pub(super) fn path_size(&self) -> u64 {
         self.path_vectors() * if self.kernel.is_double() { 32 } else { 16 }
@@ -187,9 +198,9 @@ pub const WALK_PATHS: &str = "walk_paths";
 /// The entry point that shades what they have met, where several share an invocation.
 pub const SHADE_PATHS: &str = "shade_paths";
 /// The entry point that goes before each bounce of paths.
-pub const BEGIN_BOUNCE: &str = "begin_bounce";
+pub(super) const BEGIN_BOUNCE: &str = "begin_bounce";
 /// The entry point that makes pixels of samples.
-pub const RESOLVE: &str = "resolve";
+pub(super) const RESOLVE: &str = "resolve";
 
 /// The kernels of a bounce of the paths.
 #[derive(Debug)]
@@ -249,14 +260,27 @@ pub(super) fn compile(gpu: &Gpu, specialisation: &Specialisation) -> Result<Stag
     };
     let between = || {
         let module = parsed(&Module::between_stages())?;
-        Stage::new(gpu, &module, BEGIN_BOUNCE, &constants, &[(12, ReadWrite), (16, ReadWrite)])
+        Stage::new(
+            gpu,
+            &module,
+            BEGIN_BOUNCE,
+            &specialisation.constants_of(BEGIN_BOUNCE),
+            &[(12, ReadWrite), (16, ReadWrite)],
+        )
     };
     let resolve = || {
         if specialisation.samples == 1 {
             return Ok(None);
         }
         let module = parsed(&Module::resolve(specialisation.kernel))?;
-        Stage::new(gpu, &module, RESOLVE, &constants, &[(0, Uniform), (7, Read), (15, ReadWrite)]).map(Some)
+        Stage::new(
+            gpu,
+            &module,
+            RESOLVE,
+            &specialisation.constants_of(RESOLVE),
+            &[(0, Uniform), (7, Read), (15, ReadWrite)],
+        )
+        .map(Some)
     };
     let copies: &[(u32, Access)] =
         if specialisation.variant().copies() { &[(24, vectors), (25, vectors)] } else { &[] };

@@ -14,6 +14,7 @@ use super::pack::{bytes, low_light, low_shape, shape_value};
 use super::pipeline::Specialisation;
 use super::readable::Readable;
 use super::shader::{Kernel, Module, Places, Slots, Storage, Walk};
+use super::shared;
 use super::spirv::Parsed;
 use super::stage::Access::{Read, ReadWrite, Uniform};
 use super::stage::{Access, Resource, Stage};
@@ -25,10 +26,10 @@ use crate::scene::{Light, Sphere};
 
 /// Rays of a dispatch at the most: some milliseconds on the slowest device seen.
 const MAX_RAYS: usize = 1 << 16;
-/// Invocations of a workgroup, as in `shaders/probe.wgsl`.
-const GROUP: usize = 64;
-/// Numbers of an answer with the point of the hit, as there.
-const POINT_VALUES: usize = 13;
+/// Invocations of a workgroup.
+const GROUP: usize = shared::SMALL_GROUP as usize;
+/// Numbers of an answer with the point of the hit.
+const POINT_VALUES: usize = shared::POINT_VALUES as usize;
 
 /// One ray and what it can meet.
 #[derive(Debug, Clone, Copy)]
@@ -386,11 +387,11 @@ impl<'a> Prober<'a> {
             mirrored: vector(at + 10),
         };
         answers.extend(flags.as_chunks::<2>().0.iter().enumerate().map(|(i, words)| Answer {
-            found: words[0] & 1 != 0,
-            inside: words[0] & 2 != 0,
-            finite: words[0] & 4 != 0,
-            facing: words[0] & 8 != 0,
-            blocked: words[0] & 16 != 0,
+            found: words[0] & shared::PROBE_FOUND != 0,
+            inside: words[0] & shared::PROBE_INSIDE != 0,
+            finite: words[0] & shared::PROBE_FINITE != 0,
+            facing: words[0] & shared::PROBE_FACING != 0,
+            blocked: words[0] & shared::PROBE_BLOCKED != 0,
             surface: words[1].wrapping_add(first),
             value: value(i * size),
             point: (size == POINT_VALUES).then(|| point(i * size)),

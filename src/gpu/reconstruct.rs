@@ -7,15 +7,13 @@ use super::device::Gpu;
 use super::error::Error;
 use super::readable::Readable;
 use super::shader::Module;
+use super::shared::SMALL_GROUP;
 use super::spirv::Parsed;
 use super::stage::Access::{self, Read, ReadWrite, Uniform};
 use super::stage::{Resource, Stage};
 use super::upload::small_buffer;
 use crate::misuse::check_colors;
 use crate::sampling::{Fill, NO_SAMPLE, Samples, flood_steps, packed};
-
-/// Invocations of a workgroup, which lie in a row.
-const GROUP: u32 = 64;
 
 /// The kernels that fill pictures.
 #[derive(Debug)]
@@ -144,8 +142,8 @@ fn bind(gpu: &Gpu, stage: &Stage, buffers: &[&wgpu::Buffer]) -> wgpu::BindGroup 
 /// Runs a kernel over all pixels, once for each group.
 fn run(gpu: &Gpu, stage: &Stage, samples: &Samples, groups: &[wgpu::BindGroup]) {
     let (width, height) = samples.size();
-    // A dispatch of its own for each, so that none is long.
+    // A dispatch of its own for each, so that none is long; workgroups lie in rows.
     for group in groups {
-        stage.dispatch(gpu, group, [width.div_ceil(GROUP), height]);
+        stage.dispatch(gpu, group, [width.div_ceil(SMALL_GROUP), height]);
     }
 }

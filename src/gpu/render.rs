@@ -20,6 +20,7 @@ use super::pack::{Packed, list_contents};
 use super::pipeline::{Bounce, Specialisation, Stages};
 use super::readable::Readable;
 use super::shader::{Kernel, Slots, Variant, Walk};
+use super::shared::{self, MAX_DISPATCH_TILES, ONE_PATH, SEVERAL_PATHS, WORKGROUP_WORDS};
 use super::stage::{Resource, Stage};
 use super::tables::{are_too_large, check_fits, copies_fit, copy_resources, list_resources, scene_resources};
 use super::timestamps::Timestamps;
@@ -39,10 +40,10 @@ use crate::tiles::TILE;
 use crate::tuning::Class;
 pub use output::{Output, Pixels, Rows};
 use place::{Statuses, dispatch_bits};
-use tiles::{MAX_DISPATCH_TILES, TILES_SIZE, TileWords};
+use tiles::{TILES_SIZE, TileWords};
 
 /// Pixels of a tile.
-const TILE_PIXELS: usize = (TILE * TILE) as usize;
+const TILE_PIXELS: usize = shared::TILE_PIXELS as usize;
 /// Paths keep the index of a sample's result as a number, exact in `f32` up to this.
 const MAX_PATHS: u64 = 1 << 24;
 
@@ -174,15 +175,9 @@ struct Work {
 #[derive(Debug, Clone, Copy)]
 enum Count {
     Known(u32),
-    /// As many as the device has found, at this offset.
-    Found(u64),
+    /// As many as the device has found, in the words from this one on.
+    Found(u32),
 }
-
-/// The counts of workgroups in `shaders/bounce.wgsl`: their bytes, and where those of the kernel with one path an invocation and
-/// of the one with several begin.
-const WORKGROUPS_SIZE: u64 = 24;
-const ONE_PATH: u64 = 0;
-const SEVERAL_PATHS: u64 = 12;
 
 /// Bytes of the shader's `Stage`.
 const STAGE_SIZE: u64 = 8;
@@ -472,7 +467,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
                 pass.set_bind_group(0, group, &[]);
                 match workgroups {
                     Count::Known(count) => pass.dispatch_workgroups(count, 1, 1),
-                    Count::Found(offset) => pass.dispatch_workgroups_indirect(&work.workgroups, offset),
+                    Count::Found(word) => pass.dispatch_workgroups_indirect(&work.workgroups, 4 * u64::from(word)),
                 }
             };
             let tiles = Count::Known(Self::workgroups(tiles.len()));
@@ -566,7 +561,7 @@ impl Work {
             Slots::List => empty((1 + pixel_count) * 8, storage | copied),
         };
         let stage = empty(STAGE_SIZE, storage | copied);
-        let workgroups = empty(WORKGROUPS_SIZE, storage | wgpu::BufferUsages::INDIRECT);
+        let workgroups = empty(4 * u64::from(WORKGROUP_WORDS), storage | wgpu::BufferUsages::INDIRECT);
         let colors = stages.resolve.as_ref().map(|_| empty(slots * specialisation.color_size(), storage));
         let results = colors.as_ref().unwrap_or(&pixels.buffer);
         let mut all = resources.to_vec();

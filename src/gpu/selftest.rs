@@ -7,14 +7,13 @@ use super::device::Gpu;
 use super::error::Error;
 use super::layout::single::Params;
 use super::shader::Module;
+use super::shared::SMALL_GROUP;
 use super::stage::Access;
 use crate::cache;
 use serde::Serialize;
 
 /// Pairs that are transformed.
 const PAIRS: usize = 1 << 18;
-/// Workgroup size of the kernel.
-const GROUP: usize = 64;
 
 /// How the device's error-free transforms compare with exact arithmetic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -126,7 +125,7 @@ fn transform(gpu: &Gpu, operands: &[[f32; 2]]) -> Result<Vec<u32>, Error> {
         ],
         output: 21,
         output_len: operands.len() * 4,
-        groups: (PAIRS / GROUP) as u32,
+        groups: PAIRS as u32 / SMALL_GROUP,
     };
     job.run(gpu)
 }

@@ -6,6 +6,7 @@ use super::device::Gpu;
 use super::error::Error;
 use super::pack::Contents;
 use super::shader::Textures;
+use super::shared::ROW_BITS;
 
 /// Bytes that a task packs at a time: whole elements of every size.
 const PIECE: usize = 192 << 9;
@@ -64,8 +65,8 @@ pub(super) fn small_buffer(gpu: &Gpu, contents: &[u8], usage: wgpu::BufferUsages
     buffer
 }
 
-/// Texels in a row of a texture that stands for a buffer: as `place_of_texel` of `shaders/texels.wgsl` has it.
-pub(super) const ROW: u32 = 4096;
+/// Texels in a row of a texture that stands for a buffer.
+const ROW: u32 = 1 << ROW_BITS;
 
 /// Greatest size of `contents` as such a texture, in bytes.
 pub(super) fn max_texels(gpu: &Gpu, texel_size: u64) -> u64 {
