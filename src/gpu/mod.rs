@@ -13,6 +13,7 @@ mod guard;
 mod inline;
 pub mod kernel_cache;
 pub mod layout;
+mod listing;
 mod pack;
 mod pipeline;
 mod probe;
