@@ -1,5 +1,6 @@
 // Rays of a batch with what rounding took from them.
 // needs: eft, probe, ray, real, types
+// host: SMALL_GROUP
 
 @group(0) @binding(14) var<storage, read> probe_low: array<real>;
 
@@ -13,7 +14,7 @@ fn probe_ray(index: u32) -> Ray {
 }
 
 // The residuals of the error-free sum and product of two numbers.
-@compute @workgroup_size(64)
+@compute @workgroup_size(SMALL_GROUP)
 fn probe_transforms(@builtin(global_invocation_id) id: vec3<u32>) {
     params = given_params;
     let a = probe_reals[6u * id.x];

@@ -1,4 +1,4 @@
-// What this pipeline simulates. The host sets every constant from the scene's effects; src/gpu/pipeline.rs is the only place
+// What this pipeline simulates. The host sets every constant from the scene's effects; src/gpu/kernel/specialisation.rs is the only place
 // that does. The defaults compile everything.
 
 override AMBIENT: bool = true;

@@ -1,6 +1,6 @@
 // Error-free transforms in f32. Compilers may rewrite (a + b) - a to b, factor sums of products and fuse a product into a sum,
 // so results that such a rule could reach pass through barrier(), which costs one instruction; parts cut off by
-// a mask are out of reach as they are. A self-test on the device decides whether it all holds (src/gpu/selftest.rs).
+// a mask are out of reach as they are. A self-test on the device decides whether it all holds (src/gpu/run/selftest.rs).
 // needs: barrier
 
 // hi + lo, lo some units in the last place of hi at most.

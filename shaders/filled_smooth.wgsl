@@ -2,9 +2,7 @@
 // with one over the square of its distance (D. Shepard, "A two-dimensional interpolation function for irregularly-spaced
 // data", 1968).
 // needs: fill, flood
-
-// Weight of a sample at distance 1, so that nine weighted levels fit into 32 bits.
-const UNIT_WEIGHT: u32 = 65536u;
+// host: UNIT_WEIGHT
 
 struct Mean {
     sums: vec3<u32>,

@@ -1,5 +1,6 @@
 // One sample a pixel: its result is the pixel.
 // needs: counters, effects, quantize, real, see, slots
+// host: STATUS_CUT, STATUS_TANGENT
 
 // Red, green, blue in the low bytes, status in the high one.
 @group(0) @binding(7) var<storage, read_write> pixels: array<u32>;

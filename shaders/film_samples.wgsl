@@ -1,5 +1,6 @@
 // Several samples a pixel: their results are colours, of which the pixel is the mean.
-// needs: counters, effects, quantize, real, see, slots
+// needs: counters, effects, real, see, slots
+// host: STATUS_CUT, STATUS_TANGENT
 
 // With the status, as a number.
 @group(0) @binding(7) var<storage, read_write> colors: array<vec4r>;

@@ -12,8 +12,6 @@ struct Flood {
 // The nearest sample of each pixel so far: its row in the upper half, its column in the lower one.
 @group(0) @binding(1) var<storage, read> owners: array<u32>;
 
-const NO_SAMPLE: u32 = 0xffffffffu;
-
 fn place(packed: u32) -> vec2<i32> {
     return vec2(i32(packed & 0xffffu), i32(packed >> 16u));
 }

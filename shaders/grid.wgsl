@@ -1,6 +1,7 @@
 // A walk through the grid from cell to cell (Amanatides, Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing", 1987), in turns:
 // each tests a sphere, takes a step, or both, so that lanes with long and with short lists do not wait for each other.
 // needs: counters, distance, entry, intersect, ray, real, scene, search, types
+// host: WALK_SLACK
 
 struct Walk {
     // In cells.
@@ -62,8 +63,7 @@ fn take_turn(walk: ptr<function, Walk>, nearest: ptr<function, Hit>, ray: Ray, o
     let is_x = (next.x <= next.y) & (next.x <= next.z);
     let is_y = !is_x & (next.y <= next.z);
     let exit = select(select(next.z, next.y, is_y), next.x, is_x);
-    // The hits in later cells are good to far less than this part.
-    let is_done = known.found & (nearest_real(known.t) * real(1.0009765625) < real(exit));
+    let is_done = known.found & (nearest_real(known.t) * WALK_SLACK < real(exit));
     // `leave` is of the last walls, by the very same operations.
     let goes_on = !is_done & (exit < (*walk).leave);
     let strides = (*walk).strides;

@@ -1,5 +1,6 @@
 // One jump: each pixel asks those around.
 // needs: flood
+// host: NO_SAMPLE, SMALL_GROUP
 
 @group(0) @binding(2) var<storage, read_write> next_owners: array<u32>;
 
@@ -24,7 +25,7 @@ fn asked(known: Nearest, pixel: vec2<i32>, dx: i32, dy: i32) -> Nearest {
     return Nearest(select(known.owner, owner, is_nearer), select(known.least, away, is_nearer));
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(SMALL_GROUP)
 fn jump(@builtin(global_invocation_id) id: vec3<u32>) {
     let pixel = vec2<i32>(id.xy);
     if pixel.x >= flood.width {

@@ -9,7 +9,7 @@
 //   the start in the object space of that sphere, and 1 where it is on the inner wall;
 //   for the tiers that carry it, what rounding took from the start.
 //
-// Vectors of a path: as path_vectors in src/gpu/pipeline.rs has it.
+// Vectors of a path: as path_vectors in src/gpu/kernel/specialisation.rs has it.
 override VECTORS: u32;
 
 // Whether there is a next bounce: 0 or 1.

@@ -1,5 +1,6 @@
-// Rays in batches through the code that renders: src/gpu/probe.rs.
+// Rays in batches through the code that renders: src/gpu/run/probe.rs.
 // needs: batch, distance, intersect, ray, real, reflect, refract, scene, search, shade, types
+// host: POINT_VALUES, PROBE_BLOCKED, PROBE_FACING, PROBE_FINITE, PROBE_FOUND, PROBE_INSIDE, SMALL_GROUP
 
 // Six numbers a ray: origin and direction.
 @group(0) @binding(13) var<storage, read> probe_reals: array<real>;
@@ -9,12 +10,6 @@
 @group(0) @binding(16) var<storage, read_write> probe_flags: array<vec2<u32>>;
 // The root or another real number; with the point of the hit, POINT_VALUES a ray.
 @group(0) @binding(17) var<storage, read_write> probe_values: array<real>;
-
-const PROBE_FOUND: u32 = 1u;
-const PROBE_INSIDE: u32 = 2u;
-const PROBE_FINITE: u32 = 4u;
-const PROBE_FACING: u32 = 8u;
-const PROBE_BLOCKED: u32 = 16u;
 
 fn probe_vector(at: u32) -> vec3r {
     return vec3r(probe_reals[at], probe_reals[at + 1u], probe_reals[at + 2u]);
@@ -57,9 +52,6 @@ fn store(at: u32, v: vec3r) {
     probe_values[at + 2u] = v.z;
 }
 
-// Numbers of an answer with the point of the hit.
-const POINT_VALUES: u32 = 13u;
-
 // The same, and the place of the hit, what it carries of it besides, its normal, and the direction in which it mirrors the ray.
 fn answer_with_point(index: u32, ray: Ray, hit: Hit) {
     let at = POINT_VALUES * index;
@@ -72,14 +64,14 @@ fn answer_with_point(index: u32, ray: Ray, hit: Hit) {
 }
 
 // The nearest hit.
-@compute @workgroup_size(64)
+@compute @workgroup_size(SMALL_GROUP)
 fn probe_nearest(@builtin(global_invocation_id) id: vec3<u32>) {
     params = given_params;
     answer(id.x, id.x, probe_hit(probe_ray(id.x), probe_words[id.x]));
 }
 
 // The nearest hit and its point.
-@compute @workgroup_size(64)
+@compute @workgroup_size(SMALL_GROUP)
 fn probe_point(@builtin(global_invocation_id) id: vec3<u32>) {
     params = given_params;
     let ray = probe_ray(id.x);
@@ -87,7 +79,7 @@ fn probe_point(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 
 // Whether something stands between the origin and t = 1.
-@compute @workgroup_size(64)
+@compute @workgroup_size(SMALL_GROUP)
 fn probe_blocked(@builtin(global_invocation_id) id: vec3<u32>) {
     params = given_params;
     let blocked = any_hit(probe_ray(id.x), probe_own(probe_words[id.x]), Light(), 0u, true);
@@ -96,7 +88,7 @@ fn probe_blocked(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 
 // The nearest hit, whether it faces the ray's own light, N.L, and whether something stands between.
-@compute @workgroup_size(64)
+@compute @workgroup_size(SMALL_GROUP)
 fn probe_lit(@builtin(global_invocation_id) id: vec3<u32>) {
     params = given_params;
     let ray = probe_ray(id.x);
@@ -115,7 +107,7 @@ fn probe_lit(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 
 // The hit after as many reflections as the ray's third word says, and its point.
-@compute @workgroup_size(64)
+@compute @workgroup_size(SMALL_GROUP)
 fn probe_bounce(@builtin(global_invocation_id) id: vec3<u32>) {
     params = given_params;
     let words = probe_words[id.x];
@@ -132,7 +124,7 @@ fn probe_bounce(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 
 // The hit after the path of the refraction ray through as many surfaces as the ray's third word says, and its point.
-@compute @workgroup_size(64)
+@compute @workgroup_size(SMALL_GROUP)
 fn probe_refract(@builtin(global_invocation_id) id: vec3<u32>) {
     params = given_params;
     let words = probe_words[id.x];
@@ -149,7 +141,7 @@ fn probe_refract(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 
 // The nearest hit and the specular term of the ray's own light there.
-@compute @workgroup_size(64)
+@compute @workgroup_size(SMALL_GROUP)
 fn probe_highlight(@builtin(global_invocation_id) id: vec3<u32>) {
     params = given_params;
     let ray = probe_ray(id.x);
@@ -163,7 +155,7 @@ fn probe_highlight(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 
 // The specular power of d and n.
-@compute @workgroup_size(64)
+@compute @workgroup_size(SMALL_GROUP)
 fn probe_power(@builtin(global_invocation_id) id: vec3<u32>) {
     let power = specular_power(probe_reals[6u * id.x], probe_reals[6u * id.x + 1u]);
     probe_flags[id.x] = vec2<u32>(select(0u, PROBE_FINITE, is_finite(power)), 0u);

@@ -8,10 +8,6 @@ alias vec4r = vec4<f32>;
 // Greater roots, infinity and NaN are never a hit.
 const FAR: real = 3e38;
 
-// Mirrors and glass with a coefficient beyond 1 or -1 amplify no further than this or its negative, or products would overflow;
-// where nothing is negative, whatever is lit at all is white long before.
-const MAX_THROUGHPUT: real = 1e25;
-
 fn is_finite(x: real) -> bool {
     // By the bits: comparisons with NaN may be folded away.
     return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;

@@ -1,5 +1,6 @@
 // The mirrored view ray and what every secondary ray shares.
 // needs: ray, real, shade
+// host: MAX_THROUGHPUT
 
 // The mirrored view ray, of unit length.
 fn reflection_ray(surface: Surface) -> Ray {

@@ -1,12 +1,13 @@
 // The mean over each pixel's samples.
 // needs: effects, quantize, real, types
+// host: STATUS_CUT, STATUS_FLAGS, TILE_PIXELS
 
 @group(0) @binding(7) var<storage, read> colors: array<vec4r>;
 @group(0) @binding(15) var<storage, read_write> pixels: array<u32>;
 
 // Row by row, unclamped; read it beside src/cpu/render.rs. Taken from differences to the first sample, it is exact where all
 // are equal.
-@compute @workgroup_size(64)
+@compute @workgroup_size(TILE_PIXELS)
 fn resolve(@builtin(global_invocation_id) id: vec3<u32>) {
     params = given_params;
     let first = colors[id.x * SAMPLES * SAMPLES];

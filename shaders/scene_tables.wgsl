@@ -24,7 +24,7 @@ fn low_shape_of(sphere: u32) -> Shape {
     return Shape(first, second.inv_scale, second.index);
 }
 
-// Vectors of a material: material_vectors in src/gpu/pack.rs.
+// Vectors of a material: material_vectors in src/gpu/kernel/specialisation.rs.
 override MATERIAL: u32 = 3u;
 
 fn material_of(sphere: u32) -> Material {

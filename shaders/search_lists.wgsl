@@ -1,8 +1,6 @@
 // The nearest hit and any hit among those spheres that a ray can meet; read it beside src/accel and src/cpu/intersect.rs.
 // needs: body, counters, distance, effects, intersect, kernel, ray, real, scene, tables, types
-
-// Radii that a sphere reaches towards a light, rounding included: REACH in src/accel/light_buffer.rs.
-const REACH: real = real(1.01);
+// host: REACH
 
 // The nearer of a hit and the intersection with one more sphere; of equal ones the lower index.
 fn nearer_of(nearest: Hit, ray: Ray, body: Body, sphere: u32, exit: Exit, range: Range) -> Hit {

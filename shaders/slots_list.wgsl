@@ -1,5 +1,6 @@
 // Single pixels of a list.
 // needs: effects, film, scene, types
+// host: TILE_PIXELS
 
 struct List {
     // Above the flags of a status byte.
@@ -15,7 +16,7 @@ fn dispatch_bits() -> u32 {
 }
 
 // One lane casts the primary rays of one pixel and shades what they hit.
-@compute @workgroup_size(64)
+@compute @workgroup_size(TILE_PIXELS)
 fn see_samples(@builtin(global_invocation_id) id: vec3<u32>) {
     params = given_params;
     load_lights();

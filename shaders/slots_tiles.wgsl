@@ -1,5 +1,6 @@
 // All pixels of tiles.
 // needs: effects, film, scene, types
+// host: DISPATCH_TILES, TILE, TILE_PIXELS
 
 struct Tiles {
     // Bits of a tile's column in its word; those above them are its row, counted from this one.
@@ -7,8 +8,8 @@ struct Tiles {
     first_row: u32,
     // Above the flags of a status byte.
     dispatch_bits: u32,
-    // Tiles that a sphere may cover. The length is a quarter of MAX_DISPATCH_TILES of src/gpu/render.rs.
-    @align(16) words: array<vec4<u32>, 4095>,
+    // Tiles that a sphere may cover.
+    @align(16) words: array<vec4<u32>, DISPATCH_TILES / 4u>,
 }
 
 @group(0) @binding(6) var<uniform> tiles: Tiles;
@@ -18,13 +19,13 @@ fn dispatch_bits() -> u32 {
 }
 
 // One workgroup casts the primary rays of one tile, row by row, and shades what they hit.
-@compute @workgroup_size(64)
+@compute @workgroup_size(TILE_PIXELS)
 fn see_tiles(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) index: u32) {
     params = given_params;
     load_lights();
     let word = tiles.words[group.x / 4u][group.x % 4u];
     let row = word >> tiles.column_bits;
     let tile = vec2(word - (row << tiles.column_bits), tiles.first_row + row);
-    let pixel = tile * 8u + vec2(index % 8u, index / 8u);
-    see_pixel(pixel, (group.x * 64u + index) * SAMPLES * SAMPLES);
+    let pixel = tile * TILE + vec2(index % TILE, index / TILE);
+    see_pixel(pixel, (group.x * TILE_PIXELS + index) * SAMPLES * SAMPLES);
 }

@@ -1,9 +1,10 @@
 // Numbers in the texels of textures.
 // needs: real, texture, vectors
+// host: ROW_BITS
 
-// The place of a texel; rows have 2^12: ROW in src/gpu/upload.rs.
+// The place of a texel.
 fn place_of_texel(index: u32) -> vec2<u32> {
-    return vec2<u32>(index & 4095u, index >> 12u);
+    return vec2<u32>(index & ((1u << ROW_BITS) - 1u), index >> ROW_BITS);
 }
 
 // The numbers with this index, four to a vector.

@@ -1,4 +1,4 @@
-// What the host packs: src/gpu/layout.rs has the same structs under the same names, held together by tests.
+// What the host packs: src/gpu/table/layout.rs has the same structs under the same names, held together by tests.
 // needs: real
 
 struct Params {

@@ -4,6 +4,7 @@
 // others. So an invocation walks several paths, one after another, and begins the next while its neighbours are still on their
 // way.
 // needs: counters, distance, effects, grid, intersect, path, ray, real, scene, secondary, stage, tables, types
+// host: MAX_LARGE
 
 // For each path the sphere that its ray meets, which is below 2^24, and these bits.
 const HIT_FOUND: u32 = 1u << 31u;
@@ -12,11 +13,11 @@ const HIT_CUT: u32 = 1u << 29u;
 
 // Turns between two looks whether a lane is free for its next path.
 const TURNS: u32 = 16u;
-// What these, the look itself and the large spheres, two a turn and MAX_LARGE of src/accel/grid.rs at the most, add to the turns
-// of all loops, of which software devices end an invocation's after 65,535: see is_cut. Where that is not enough for all of its
+// What these, the look itself and the large spheres, two a turn, add to the turns of all loops, of which software devices end an invocation's after 65,535: see is_cut. Where that is not enough for all of its
 // paths, the host has each walked by an invocation of its own.
 const TURNS_OF_LOOK: u32 = 32u;
 const MAX_TURNS: u32 = 60000u;
+const_assert TURNS + 1u + MAX_LARGE / 2u <= TURNS_OF_LOOK;
 
 @compute @workgroup_size(GROUP)
 fn walk_paths(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) index: u32) {

@@ -30,8 +30,9 @@ pub enum Scalar {
 }
 
 impl Scalar {
-    /// The greatest weight of a ray: `MAX_THROUGHPUT` of kernels and reference.
-    fn max_throughput(self) -> f64 {
+    /// The greatest weight of a ray, and its negative the least: mirrors and glass with a coefficient beyond 1 or -1 amplify no
+    /// further, or products would overflow; where nothing is negative, whatever is lit at all is white long before.
+    pub const fn max_throughput(self) -> f64 {
         match self {
             Self::Single => 1e25,
             Self::Double => 1e280,

@@ -14,7 +14,9 @@ const CELL_MARGIN: f64 = 4e-3;
 /// places, each of them as large as two such coordinates along each axis, and some more.
 const PLACE_STEPS: f64 = 16.0;
 /// Spheres outside the cells at the most: every ray is tested against each of them.
-const MAX_LARGE: usize = 16;
+pub const MAX_LARGE: usize = 16;
+/// A hit that is nearer than the end of a cell by this factor ends the walk: the hits in later cells are good to far less.
+pub const WALK_SLACK: f64 = 1.0 + 1.0 / 1024.0;
 /// A sphere this many times larger than the typical one does not belong into cells made for that.
 const LARGE: f64 = 32.0;
 /// Spheres among which the typical size is sought.
@@ -202,8 +204,7 @@ pub struct Step {
 impl Step {
     /// Whether a hit at `t` is nearer than whatever later cells have.
     pub fn ends_the_walk(&self, t: f64) -> bool {
-        // The hits in later cells are good to far less than this part.
-        t * (1.0 + 1.0 / 1024.0) < self.exit
+        t * WALK_SLACK < self.exit
     }
 }
 

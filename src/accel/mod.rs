@@ -20,7 +20,7 @@ use bounds::Enclosure;
 
 pub use bounds::Rounding;
 pub use density::Density;
-pub use grid::Grid;
+pub use grid::{Grid, MAX_LARGE, WALK_SLACK};
 pub use light_buffer::{Face, LightBuffer, REACH};
 pub use lists::Lists;
 pub use screen::{Cover, ScreenLists};

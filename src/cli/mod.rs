@@ -17,6 +17,7 @@ mod output;
 mod progress;
 mod render;
 mod sampling;
+mod shader;
 mod signals;
 mod stats;
 mod stress;
@@ -83,6 +84,8 @@ enum Command {
     View(view::Args),
     /// List the Vulkan devices
     Devices(devices::Args),
+    /// Print the shader that renders a scene on a device
+    Shader(shader::Args),
 }
 
 /// Runs the program with the arguments of the process.
@@ -115,6 +118,7 @@ pub fn run() -> ExitCode {
         #[cfg(feature = "view")]
         Some(Command::View(args)) => view::run(&args),
         Some(Command::Devices(args)) => devices::run(&args),
+        Some(Command::Shader(args)) => shader::run(&args),
     };
     ExitCode::from(code)
 }

@@ -26,6 +26,7 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub};
 
 use super::real::Real;
 use crate::accel::Rounding;
+use crate::brightness::Scalar;
 
 /// ln 2 as the sum of three `f64`s, to 2⁻¹⁶⁰.
 const LN_2: [f64; 3] = [std::f64::consts::LN_2, 2.319_046_813_846_299_6e-17, 5.707_708_438_416_212e-34];
@@ -158,7 +159,7 @@ impl Real for Dd {
     const ZERO: Self = Self { hi: 0.0, lo: 0.0 };
     const ONE: Self = Self { hi: 1.0, lo: 0.0 };
     const FAR: Self = Self { hi: 3e38, lo: 0.0 };
-    const MAX_THROUGHPUT: Self = Self { hi: 1e280, lo: 0.0 };
+    const MAX_THROUGHPUT: Self = Self { hi: Scalar::Double.max_throughput(), lo: 0.0 };
     const ROUNDING: Rounding = Rounding::DOUBLE;
 
     #[inline]

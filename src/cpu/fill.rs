@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 
 use crate::misuse::{Misuse, check_colors};
-use crate::sampling::{Fill, NO_SAMPLE, Samples, flood_steps, packed};
+use crate::sampling::{Fill, NO_SAMPLE, Samples, UNIT_WEIGHT, flood_steps, packed};
 
 /// The pixel at a packed place.
 fn place(packed: u32) -> [i32; 2] {
@@ -121,9 +121,6 @@ struct Sources<'a> {
     /// Colours of the sampled pixels.
     known: &'a [[u8; 3]],
 }
-
-/// Weight of a sample at distance 1, so that nine weighted levels fit into 32 bits.
-const UNIT_WEIGHT: u32 = 1 << 16;
 
 impl Sources<'_> {
     fn index(&self, [x, y]: [i32; 2]) -> usize {

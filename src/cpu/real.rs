@@ -4,6 +4,7 @@ use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub};
 
 use crate::accel::Rounding;
+use crate::brightness::Scalar;
 
 /// A real number type that the reference can be run in.
 pub trait Real:
@@ -27,8 +28,7 @@ pub trait Real:
     /// A number beyond every accepted distance; greater ones and infinity are never a hit.
     const FAR: Self;
 
-    /// Mirrors and glass with a coefficient beyond 1 or -1 amplify no further than this or its negative, or products would
-    /// overflow; where nothing is negative, whatever is lit at all is white long before.
+    /// The greatest weight of a ray.
     const MAX_THROUGHPUT: Self;
 
     /// How the type rounds.
@@ -63,12 +63,12 @@ pub trait Real:
 }
 
 macro_rules! impl_real {
-    ($t:ty, $max_throughput:expr, $rounding:expr) => {
+    ($t:ty, $scalar:expr, $rounding:expr) => {
         impl Real for $t {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
             const FAR: Self = 3e38;
-            const MAX_THROUGHPUT: Self = $max_throughput;
+            const MAX_THROUGHPUT: Self = $scalar.max_throughput() as $t;
             const ROUNDING: Rounding = $rounding;
 
             fn from_f64(x: f64) -> Self {
@@ -96,5 +96,5 @@ macro_rules! impl_real {
     };
 }
 
-impl_real!(f32, 1e25, Rounding::SINGLE);
-impl_real!(f64, 1e280, Rounding::DOUBLE);
+impl_real!(f32, Scalar::Single, Rounding::SINGLE);
+impl_real!(f64, Scalar::Double, Rounding::DOUBLE);

@@ -11,8 +11,9 @@ use super::kernel::compiler::Compiler;
 use super::kernel::pipeline::Stages;
 use super::kernel::shader::Tables;
 use super::kernel::specialisation::Specialisation;
-use super::kernel::stage::{MAX_BUFFERS, MAX_TABLES};
+use super::kernel::stage::MAX_TABLES;
 use super::kernel::store::KernelStore;
+use super::shared::LEAST_BUFFERS;
 use super::tuned::DeviceTuning;
 use crate::misuse::Misuse;
 use crate::precision::Tier;
@@ -50,7 +51,7 @@ impl Gpu {
     /// What holds the tables of a scene: storage buffers unless textures are faster, or there are too few.
     pub fn tables(&self) -> Tables {
         let info = &self.device.info;
-        if !self.tuned.tuning.texture_tables && info.max_storage_buffers >= MAX_TABLES + MAX_BUFFERS {
+        if !self.tuned.tuning.texture_tables && info.max_storage_buffers >= MAX_TABLES + LEAST_BUFFERS {
             Tables::Buffers
         } else if info.max_storage_textures >= MAX_TABLES {
             Tables::Stored

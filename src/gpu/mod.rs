@@ -8,6 +8,7 @@ mod facade;
 mod kernel;
 mod render;
 mod run;
+mod shared;
 mod table;
 mod tuned;
 

@@ -28,6 +28,7 @@ use crate::gpu::kernel::pipeline::Bounce;
 use crate::gpu::kernel::shader::{Kernel, Slots, Variant, Walk};
 use crate::gpu::kernel::specialisation::Specialisation;
 use crate::gpu::kernel::stage::{Resources, Stage};
+use crate::gpu::shared::{ONE_PATH, SEVERAL_PATHS, dispatch_tiles};
 use crate::gpu::table::bind::{are_too_large, check_fits, copies_fit, copy_resources, list_resources, scene_resources};
 use crate::gpu::table::pack::{Packed, list_contents};
 use crate::limits;
@@ -40,15 +41,15 @@ use crate::tuning::Class;
 pub use output::{Output, Pixels, Rows};
 use place::{Statuses, dispatch_bits};
 pub use rendered::Rendered;
-use tiles::{MAX_DISPATCH_TILES, TILE_PIXELS, TileWords};
-use work::{ONE_PATH, RAY_COUNT_SIZE, SEVERAL_PATHS, STAGE_SIZE, Work};
+use tiles::{TILE_PIXELS, TileWords};
+use work::{RAY_COUNT_SIZE, STAGE_SIZE, Work};
 
 /// How many workgroups a dispatch has.
 #[derive(Debug, Clone, Copy)]
 enum Count {
     Known(u32),
-    /// As many as the device has found, at this offset.
-    Found(u64),
+    /// As many as the device has found, in the words from this one on.
+    Found(u32),
 }
 
 /// Paths keep the index of a sample's result as a number, exact in `f32` up to this.
@@ -208,6 +209,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         let specialisation = Specialisation {
             slots: O::SLOTS,
             count_rays: options.count_rays,
+            dispatch_tiles: dispatch_tiles(gpu.device.info.max_uniform),
             ..Specialisation::new(scene, settings, effects, kernel, tuning, tables)
         };
         let camera = Camera::new(scene, settings);
@@ -270,7 +272,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
             },
             work: None,
             inputs: Inputs { resources, specialisation },
-            tiles_per_dispatch: tiles.clamp(1, u64::from(MAX_DISPATCH_TILES)) as u32,
+            tiles_per_dispatch: tiles.clamp(1, u64::from(specialisation.dispatch_tiles)) as u32,
             times: DeviceTimes::default(),
             submitted: 0,
             timestamps: options.device_clock.then(|| Timestamps::new(&gpu.device)).flatten(),
@@ -352,7 +354,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
             (u64::from(self.gpu.tuned().tuning.path_mib) << 20).min(info.max_storage_binding).min(info.max_buffer);
         // Paths take a workgroup for so many of them.
         let paths = (u64::from(info.max_workgroups) * u64::from(specialisation.workgroup)).min(MAX_PATHS);
-        let limit = u64::from(MAX_DISPATCH_TILES.min(info.max_workgroups))
+        let limit = u64::from(specialisation.dispatch_tiles.min(info.max_workgroups))
             .min(paths / slots)
             .min(bytes / (slots * path.max(color).max(count)));
         self.covered_tiles.min(limit).max(1) as u32
@@ -413,7 +415,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
                 pass.set_bind_group(0, group, &[]);
                 match workgroups {
                     Count::Known(count) => pass.dispatch_workgroups(count, 1, 1),
-                    Count::Found(offset) => pass.dispatch_workgroups_indirect(&work.workgroups, offset),
+                    Count::Found(word) => pass.dispatch_workgroups_indirect(&work.workgroups, 4 * u64::from(word)),
                 }
             };
             let tiles = Count::Known(Self::workgroups(tiles.len()));
@@ -476,6 +478,6 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
     fn set_pace(&mut self, tiles: usize, took: Duration) {
         let target = self.gpu.tuned().tuning.dispatch_ms * 1e-3;
         let factor = (target / took.as_secs_f64().max(1e-9)).min(4.0);
-        self.tiles_per_dispatch = ((tiles as f64 * factor) as u32).clamp(1, MAX_DISPATCH_TILES);
+        self.tiles_per_dispatch = ((tiles as f64 * factor) as u32).clamp(1, self.inputs.specialisation.dispatch_tiles);
     }
 }

@@ -49,6 +49,9 @@ impl fmt::Display for Fill {
 /// The nearest sample of a pixel before any is known.
 pub(crate) const NO_SAMPLE: u32 = u32::MAX;
 
+/// Weight of a sample at distance 1 in a mean, so that nine weighted levels fit into 32 bits.
+pub(crate) const UNIT_WEIGHT: u32 = 1 << 16;
+
 /// The place of a pixel in 32 bits: the row in the upper half, so that a smaller number is farther up, or farther left.
 pub fn packed([x, y]: [u32; 2]) -> u32 {
     (y << 16) | x

@@ -38,15 +38,15 @@ impl Declaration {
         for line in text.lines().map(|line| line.split("//").next().unwrap().trim_end()) {
             let begins = line.starts_with(|c: char| c == '@' || c.is_ascii_alphabetic());
             let keyword = line.split([' ', '<']).find(|word| KEYWORDS.contains(word));
-            match keyword.filter(|_| begins) {
-                Some(keyword) => {
-                    let after = line.split_once(keyword).unwrap().1;
-                    let after = if after.starts_with('<') { after.split_once('>').unwrap().1 } else { after };
-                    let name = words(after).next().unwrap().0.to_owned();
-                    all.push(Self { name, text: std::mem::take(&mut attributes) + line + "\n" });
-                }
-                None if begins => attributes += &format!("{line}\n"),
-                None => all.last_mut().into_iter().for_each(|it| it.text += &format!("{line}\n")),
+            if let Some(keyword) = keyword.filter(|_| begins) {
+                let after = line.split_once(keyword).unwrap().1;
+                let after = if after.starts_with('<') { after.split_once('>').unwrap().1 } else { after };
+                let name = words(after).next().unwrap().0.to_owned();
+                all.push(Self { name, text: std::mem::take(&mut attributes) + line });
+            } else {
+                let text = all.last_mut().map(|it| &mut it.text).filter(|_| !begins).unwrap_or(&mut attributes);
+                text.push_str(line);
+                text.push('\n');
             }
         }
         all
@@ -93,7 +93,9 @@ fn a_file_needs_what_it_uses_and_nothing_else() {
     let declared: BTreeMap<_, _> = files.iter().map(|(name, text)| (name, Declaration::all_of(text))).collect();
     let mut slots: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
     for (file, declarations) in &declared {
-        declarations.iter().for_each(|it| drop(slots.entry(&it.name).or_default().insert(slot_of(file))));
+        for declaration in declarations {
+            slots.entry(&declaration.name).or_default().insert(slot_of(file));
+        }
     }
     let host: BTreeSet<_> = files.values().flat_map(|text| head(text, "host")).collect();
     for (file, text) in &files {
@@ -119,12 +121,13 @@ fn modules() -> Vec<Module> {
         (Places::Grid, Tables::Stored, Slots::Tiles, Walk::InPlace, None),
         (Places::Large, Tables::Sampled, Slots::List, Walk::AtOnce, None),
         (Places::Both, Tables::Stored, Slots::Tiles, in_turn, None),
+        (Places::Both, Tables::Buffers, Slots::Tiles, in_turn, None),
         (Places::Both, Tables::Stored, Slots::Tiles, Walk::AtOnce, Some(std::num::NonZeroU32::MIN)),
     ];
     let pictures = kernels.iter().flat_map(|&kernel| {
         ways.map(|(places, tables, slots, walk, refraction)| {
             let (storage, samples) = (Storage::Tables(tables), slots == Slots::List);
-            Module::render(&Variant { kernel, storage, places, samples, refraction, slots, walk })
+            Module::render(&Variant { kernel, storage, places, samples, refraction, slots, walk, dispatch_tiles: 8 })
         })
     });
     let others = [Module::between_stages(), Module::flood(), Module::selftest()];

@@ -98,7 +98,10 @@ fn every_scene_is_rendered_with_what_there_is() {
         }
     }
     if is_whole {
-        say("every_scene_is_rendered_with_what_there_is", &format!("{rendered} pictures, none with an unexplained pixel"));
+        say(
+            "every_scene_is_rendered_with_what_there_is",
+            &format!("{rendered} pictures, none with an unexplained pixel"),
+        );
     }
 }
 

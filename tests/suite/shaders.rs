@@ -32,6 +32,8 @@ fn kinds() -> impl Iterator<Item = Variant> {
         (Places::Large, Tables::Stored, Walk::AtOnce),
         (Places::Large, Tables::Sampled, Walk::InPlace),
         (Places::Both, Tables::Sampled, in_turn),
+        (Places::Both, Tables::Buffers, in_turn),
+        (Places::Grid, Tables::Buffers, Walk::InPlace),
     ];
     kernels.flat_map(move |kernel| {
         ways.map(|(places, tables, walk)| Variant {
@@ -42,6 +44,7 @@ fn kinds() -> impl Iterator<Item = Variant> {
             refraction: None,
             slots: Slots::Tiles,
             walk,
+            dispatch_tiles: 8,
         })
     })
 }
@@ -66,6 +69,7 @@ fn specialisation(variant: &Variant, effects: EffectSet, flags: usize) -> Specia
         slots,
         count_rays,
         workgroup: 64,
+        dispatch_tiles: 8,
     }
 }
 

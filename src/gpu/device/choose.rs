@@ -68,8 +68,11 @@ fn adapters() -> Result<(wgpu::Instance, Adapters), Error> {
         ..wgpu::InstanceDescriptor::new_without_display_handle()
     });
     let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::VULKAN));
-    let adapters =
-        adapters.into_iter().enumerate().map(|(i, adapter)| (DeviceInfo::new(i, adapter.get_info(), &Offer::of(&adapter)), adapter)).collect();
+    let adapters = adapters
+        .into_iter()
+        .enumerate()
+        .map(|(i, adapter)| (DeviceInfo::new(i, adapter.get_info(), &Offer::of(&adapter)), adapter))
+        .collect();
     Ok((instance, adapters))
 }
 

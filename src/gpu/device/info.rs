@@ -80,6 +80,8 @@ pub struct DeviceInfo {
     pub max_workgroups: u32,
     /// Greatest number of invocations of a workgroup.
     pub max_invocations: u32,
+    /// Greatest size of one uniform binding, in bytes.
+    pub max_uniform: u64,
     /// Greatest number of storage buffers that a kernel reads and writes.
     pub max_storage_buffers: u32,
     /// Greatest number of storage textures that a kernel reads and writes.
@@ -99,6 +101,7 @@ impl DeviceInfo {
             max_buffer: limits.max_buffer_size,
             max_workgroups: limits.max_compute_workgroups_per_dimension,
             max_invocations: limits.max_compute_invocations_per_workgroup,
+            max_uniform: limits.max_uniform_buffer_binding_size,
             max_storage_buffers: limits.max_storage_buffers_per_shader_stage,
             max_storage_textures: limits.max_storage_textures_per_shader_stage,
         }

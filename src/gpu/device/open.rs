@@ -9,6 +9,7 @@ use super::error::Error;
 use super::guard::guarded;
 use super::info::{DeviceInfo, DeviceKind};
 use super::mask::{Mask, Offer};
+use crate::gpu::shared::{LEAST_BUFFERS, LEAST_UNIFORM, TILE_PIXELS};
 
 /// An open device.
 #[derive(Debug)]
@@ -48,9 +49,6 @@ impl Failure {
     }
 }
 
-/// Bytes of a uniform that every device must be able to bind: `Tiles` of `shaders/slots_tiles.wgsl`.
-const LEAST_UNIFORM: u64 = 1 << 16;
-
 impl Device {
     /// Opens the chosen device; [`Choice::Auto`] and [`Choice::Cpu`] mean the best one here.
     ///
@@ -79,13 +77,14 @@ impl Device {
             features |= wgpu::Features::MAPPABLE_PRIMARY_BUFFERS;
         }
         let features = features & offer.features;
-        let uniform = offer.limits.max_uniform_buffer_binding_size;
-        if uniform < LEAST_UNIFORM {
-            let limit = "max_uniform_buffer_binding_size (Vulkan's maxUniformBufferRange)";
-            return Err(Error::unsuitable(
-                &info,
-                format!("{limit} is {uniform} bytes, of {LEAST_UNIFORM} that it needs"),
-            ));
+        for (limit, offered, needed) in [
+            ("max_uniform_buffer_binding_size", info.max_uniform, LEAST_UNIFORM),
+            ("max_compute_invocations_per_workgroup", info.max_invocations.into(), TILE_PIXELS.into()),
+            ("max_storage_buffers_per_shader_stage", info.max_storage_buffers.into(), LEAST_BUFFERS.into()),
+        ] {
+            if offered < needed {
+                return Err(Error::unsuitable(&info, format!("{limit} is {offered}, of {needed} that it needs")));
+            }
         }
         let request = adapter.request_device(&wgpu::DeviceDescriptor {
             label: None,

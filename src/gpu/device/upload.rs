@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::contents::Contents;
 use super::error::Error;
 use super::open::Device;
+use crate::gpu::shared::ROW_BITS;
 
 /// Bytes that a task packs at a time: whole elements of every size.
 const PIECE: usize = 192 << 9;
@@ -63,8 +64,8 @@ pub(crate) fn small_buffer(device: &Device, contents: &[u8], usage: wgpu::Buffer
     buffer
 }
 
-/// Texels in a row of a texture that stands for a buffer: as `place_of_texel` of `shaders/texels.wgsl` has it.
-pub(crate) const ROW: u32 = 4096;
+/// Texels in a row of a texture that stands for a buffer.
+const ROW: u32 = 1 << ROW_BITS;
 
 /// Greatest size of `contents` as such a texture, in bytes.
 pub(crate) fn max_texels(device: &Device, texel_size: u64) -> u64 {

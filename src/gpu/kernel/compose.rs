@@ -2,9 +2,10 @@
 //! slot that has several.
 
 use std::borrow::Cow;
-use std::num::NonZeroU32;
 
 use super::shader::{Kernel, Places, Slots, Storage, Tables, Variant, Walk};
+use crate::brightness::Scalar;
+use crate::gpu::shared::declaration;
 use crate::precision::Tier;
 
 /// Where the declarations of the host stand in a module.
@@ -47,9 +48,9 @@ impl Part {
         if self.name == HOST { self.name.clone() } else { format!("shaders/{}.wgsl", self.name) }
     }
 
-    /// What it is in a module.
-    pub(super) fn slot(&self) -> &str {
-        slot_of(&self.name)
+    /// The slot that it fills, if it is a file.
+    pub(super) fn slot(&self) -> Option<&str> {
+        (self.name != HOST).then(|| slot_of(&self.name))
     }
 }
 
@@ -137,11 +138,12 @@ impl Variant {
 
     /// The declaration of a constant of the host; of no other name, which then fails to parse.
     fn declaration(&self, name: &str) -> String {
-        let value = match name {
+        let value = match (name, self.refraction) {
             // Only workgroup arrays may take their size from a constant of the pipeline.
-            "MAX_WAITING" => format!("u32 = {}u", self.refraction.map_or(0, NonZeroU32::get)),
-            _ => return format!("the host has no {name}\n"),
+            ("MAX_WAITING", Some(waiting)) => Some(format!("u32 = {waiting}u")),
+            ("DISPATCH_TILES", _) => Some(format!("u32 = {}u", self.dispatch_tiles)),
+            _ => declaration(name, if self.kernel.is_double() { Scalar::Double } else { Scalar::Single }),
         };
-        format!("const {name}: {value};\n")
+        value.map_or_else(|| format!("the host has no {name}\n"), |value| format!("const {name}: {value};\n"))
     }
 }

@@ -6,6 +6,7 @@ pub mod cache;
 pub(crate) mod compiler;
 mod compose;
 mod inline;
+mod listing;
 pub(crate) mod pipeline;
 mod products;
 pub(crate) mod shader;

@@ -18,9 +18,9 @@ pub const WALK_PATHS: &str = "walk_paths";
 /// The entry point that shades what they have met, where several share an invocation.
 pub const SHADE_PATHS: &str = "shade_paths";
 /// The entry point that goes before each bounce of paths.
-pub const BEGIN_BOUNCE: &str = "begin_bounce";
+pub(super) const BEGIN_BOUNCE: &str = "begin_bounce";
 /// The entry point that makes pixels of samples.
-pub const RESOLVE: &str = "resolve";
+pub(super) const RESOLVE: &str = "resolve";
 
 /// The kernels of a bounce of the paths.
 #[derive(Debug)]
@@ -58,14 +58,14 @@ pub(crate) fn compile(
         &own
     };
     let kernel = |entry_point| Stage::new(compiler, module, entry_point, &constants);
-    let other = |module: &Module, entry_point, names: &[&str]| {
-        let constants: Vec<_> = constants.iter().copied().filter(|(name, _)| names.contains(name)).collect();
-        Stage::new(compiler, &parsed(module)?, entry_point, &constants)
+    let other = |entry_point| {
+        let module = parsed(&specialisation.module_of(entry_point))?;
+        Stage::new(compiler, &module, entry_point, &specialisation.constants_of(entry_point))
     };
-    let between = || other(&Module::between_stages(), BEGIN_BOUNCE, &["GROUP", "PATHS"]);
+    let between = || other(BEGIN_BOUNCE);
     let resolve = || match specialisation.samples {
         1 => Ok(None),
-        _ => other(&Module::resolve(specialisation.kernel), RESOLVE, &["SAMPLES"]).map(Some),
+        _ => other(RESOLVE).map(Some),
     };
     // A driver compiles a kernel on the thread that asks for it: side by side. The largest one goes here, since allocating is
     // cheapest on the main thread.

@@ -128,6 +128,8 @@ pub struct Variant {
     pub slots: Slots,
     /// How paths are walked, where nothing refracts.
     pub walk: Walk,
+    /// Tiles of a dispatch at the most.
+    pub dispatch_tiles: u32,
 }
 
 impl Variant {
@@ -141,6 +143,7 @@ impl Variant {
             refraction: None,
             slots: Slots::Tiles,
             walk: Walk::InPlace,
+            dispatch_tiles: 0,
         }
     }
 

@@ -2,9 +2,11 @@
 
 use std::num::NonZeroU32;
 
+use super::pipeline::{BEGIN_BOUNCE, RESOLVE};
 use super::shader::{Kernel, Module, Places, Slots, Storage, Tables, Variant, Walk};
 use crate::accel::Grid;
 use crate::effects::{Effect, EffectSet, Effects};
+use crate::gpu::shared::{UNIFORM, dispatch_tiles};
 use crate::scene::Scene;
 use crate::settings::{Settings, Specular};
 use crate::tuning::Tuning;
@@ -40,6 +42,8 @@ pub struct Specialisation {
     pub count_rays: bool,
     /// Invocations of a workgroup of the kernels that are not over tiles.
     pub workgroup: u32,
+    /// Tiles of a dispatch at the most.
+    pub dispatch_tiles: u32,
 }
 
 impl Specialisation {
@@ -68,6 +72,7 @@ impl Specialisation {
             slots: Slots::Tiles,
             count_rays: false,
             workgroup: tuning.workgroup,
+            dispatch_tiles: dispatch_tiles(UNIFORM),
         }
     }
 
@@ -94,8 +99,8 @@ impl Specialisation {
 
     /// What decides the text of its kernels.
     pub(crate) fn variant(&self) -> Variant {
-        let Self { kernel, storage, places, refraction, slots, walk, .. } = *self;
-        Variant { kernel, storage, places, samples: self.samples > 1, refraction, slots, walk }
+        let Self { kernel, storage, places, refraction, slots, walk, dispatch_tiles, .. } = *self;
+        Variant { kernel, storage, places, samples: self.samples > 1, refraction, slots, walk, dispatch_tiles }
     }
 
     /// Whether the intersection reads second halves of shapes.
@@ -140,6 +145,17 @@ impl Specialisation {
             constants.push(("LIGHT_COUNT", f64::from(self.lights)));
             constants.push(("MATERIAL", material_vectors(self.effects) as f64));
             constants.push(("SHAPE_ENDS", f64::from(self.reads_shape_ends())));
+        }
+        constants
+    }
+
+    /// Those that the module of an entry point declares.
+    pub fn constants_of(&self, entry_point: &str) -> Vec<(&'static str, f64)> {
+        let mut constants = self.constants();
+        match entry_point {
+            BEGIN_BOUNCE => constants.retain(|(name, _)| ["GROUP", "PATHS"].contains(name)),
+            RESOLVE => constants.retain(|(name, _)| *name == "SAMPLES"),
+            _ => {}
         }
         constants
     }

@@ -10,8 +10,6 @@ use crate::gpu::device::open::Device;
 
 /// Tables that a kernel reads and writes at the most, whatever it is specialised for.
 pub(crate) const MAX_TABLES: u32 = 13;
-/// Buffers besides.
-pub(crate) const MAX_BUFFERS: u32 = 4;
 
 /// What a binding is bound to.
 #[derive(Debug, Clone)]

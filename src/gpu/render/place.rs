@@ -6,9 +6,10 @@ use super::rendered::Rendered;
 use super::tiles::TILE_PIXELS;
 use crate::gpu::device::error::Error;
 use crate::gpu::device::open::Device;
+use crate::gpu::shared::{STATUS_CUT, STATUS_FLAGS, STATUS_NOT_FINITE, STATUS_TANGENT};
 use crate::tiles::TILE;
 
-/// How many pixels say what of themselves: `STATUS_*` of `shaders/quantize.wgsl`.
+/// How many pixels say what of themselves.
 #[derive(Debug)]
 pub(super) struct Statuses {
     /// The dispatch that they ought to be of.
@@ -22,7 +23,7 @@ const DISPATCHES: u64 = 31;
 
 /// Number `dispatch` as a status byte has it: never 0.
 pub(super) fn dispatch_bits(dispatch: u64) -> u8 {
-    ((dispatch % DISPATCHES) as u8 + 1) << 3
+    ((dispatch % DISPATCHES) as u8 + 1) << STATUS_FLAGS.count_ones()
 }
 
 impl Statuses {
@@ -33,16 +34,16 @@ impl Statuses {
 
     /// What the pixel in this column and row says.
     pub(super) fn add(&mut self, status: u8, pixel: [u32; 2]) {
-        if status & !7 != self.dispatch_bits {
+        if status & !STATUS_FLAGS != self.dispatch_bits {
             self.missing += 1;
             return;
         }
-        if status & 2 != 0 {
+        if status & STATUS_CUT != 0 {
             self.rendered.cut.push(pixel);
-        } else if status & 4 != 0 {
+        } else if status & STATUS_TANGENT != 0 {
             self.rendered.tangents.push(pixel);
         } else {
-            self.rendered.not_finite += u64::from(status & 1 != 0);
+            self.rendered.not_finite += u64::from(status & STATUS_NOT_FINITE != 0);
         }
     }
 

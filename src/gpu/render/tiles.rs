@@ -1,13 +1,15 @@
 //! Tiles as the kernel reads them: a word for the place of each.
 
+use crate::gpu::shared;
 use crate::tiles::TILE;
 
 /// Pixels of a tile.
-pub(super) const TILE_PIXELS: usize = (TILE * TILE) as usize;
-/// Tiles of a dispatch at the most: with their head they fill a uniform buffer.
-pub(super) const MAX_DISPATCH_TILES: u32 = 16_380;
-/// Bytes of the buffer: `Tiles` of `shaders/slots_tiles.wgsl`.
-pub(super) const TILES_SIZE: u64 = 16 + 4 * MAX_DISPATCH_TILES as u64;
+pub(super) const TILE_PIXELS: usize = shared::TILE_PIXELS as usize;
+
+/// Bytes of the buffer for so many tiles: `Tiles` of `shaders/slots_tiles.wgsl`.
+pub(super) fn tiles_size(dispatch_tiles: u32) -> u64 {
+    16 + 4 * u64::from(dispatch_tiles)
+}
 
 /// How the place of a tile is divided between the bits of its word.
 #[derive(Debug, Clone, Copy)]
@@ -38,13 +40,40 @@ impl TileWords {
 
 #[cfg(test)]
 mod tests {
+    use super::super::STAGE_SIZE;
     use super::*;
+    use crate::gpu::{Kernel, Module, Places, Slots, Storage, Tables, Variant, Walk};
+    use crate::precision::Tier;
 
     #[test]
-    fn the_kernel_has_as_many_words() {
-        let text = include_str!("../../../shaders/slots_tiles.wgsl");
-        assert!(text.contains(&format!("words: array<vec4<u32>, {}>", MAX_DISPATCH_TILES / 4)));
-        assert!(MAX_DISPATCH_TILES.is_multiple_of(4) && TILES_SIZE <= 1 << 16);
+    fn structs_are_as_large_as_the_kernels_have_them() {
+        let variant = Variant {
+            kernel: Kernel::Tier(Tier::Fast),
+            storage: Storage::Tables(Tables::Stored),
+            places: Places::Both,
+            samples: false,
+            refraction: None,
+            slots: Slots::Tiles,
+            walk: Walk::AtOnce,
+            dispatch_tiles: 8,
+        };
+        let module = Module::render(&variant).parse();
+        let size_of = |name: &str| {
+            let types = module.iter().flat_map(|module| module.types.iter());
+            let mut sizes = types.filter(|(_, ty)| ty.name.as_deref() == Some(name)).map(|(_, ty)| match ty.inner {
+                naga::TypeInner::Struct { span, .. } => u64::from(span),
+                _ => 0,
+            });
+            sizes.next()
+        };
+        assert_eq!([size_of("Tiles"), size_of("Stage")], [Some(tiles_size(8)), Some(STAGE_SIZE)]);
+    }
+
+    #[test]
+    fn tiles_fill_a_uniform_buffer() {
+        for (uniform, size) in [(shared::LEAST_UNIFORM, 1 << 14), (1 << 16, 1 << 16), (1 << 31, 1 << 16)] {
+            assert_eq!(tiles_size(shared::dispatch_tiles(uniform)), size);
+        }
     }
 
     /// As the kernel does it.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::tiles::{TILE_PIXELS, TILES_SIZE};
+use super::tiles::{TILE_PIXELS, tiles_size};
 use crate::gpu::device::readable::Readable;
 use crate::gpu::device::upload::small_buffer;
 use crate::gpu::facade::Gpu;
@@ -10,13 +10,8 @@ use crate::gpu::kernel::pipeline::Stages;
 use crate::gpu::kernel::shader::{Slots, Walk};
 use crate::gpu::kernel::specialisation::Specialisation;
 use crate::gpu::kernel::stage::{Resource, Stage};
+use crate::gpu::shared::WORKGROUP_WORDS;
 use crate::gpu::table::bind::empty_table;
-
-/// The counts of workgroups in `shaders/bounce.wgsl`: their bytes, and where those of the kernel with one path an invocation and
-/// of the one with several begin.
-pub(super) const WORKGROUPS_SIZE: u64 = 24;
-pub(super) const ONE_PATH: u64 = 0;
-pub(super) const SEVERAL_PATHS: u64 = 12;
 
 /// Bytes of the shader's `Stage`.
 pub(super) const STAGE_SIZE: u64 = 8;
@@ -69,11 +64,11 @@ impl Work {
         let in_turn = matches!(specialisation.walk, Walk::InTurn(_));
         let hits = empty_table(device, tables, if in_turn { 4 * slots } else { 4 }, 1);
         let tiles = match specialisation.slots {
-            Slots::Tiles => empty(TILES_SIZE, wgpu::BufferUsages::UNIFORM | copied),
+            Slots::Tiles => empty(tiles_size(specialisation.dispatch_tiles), wgpu::BufferUsages::UNIFORM | copied),
             Slots::List => empty((1 + pixel_count) * 8, storage | copied),
         };
         let stage = empty(STAGE_SIZE, storage | copied);
-        let workgroups = empty(WORKGROUPS_SIZE, storage | wgpu::BufferUsages::INDIRECT);
+        let workgroups = empty(4 * u64::from(WORKGROUP_WORDS), storage | wgpu::BufferUsages::INDIRECT);
         let colors = stages.resolve.as_ref().map(|_| empty(slots * specialisation.color_size(), storage));
         let mut all = resources.to_vec();
         let mut bind = |name, buffer: &wgpu::Buffer| all.push((name, Resource::Buffer(buffer.clone())));

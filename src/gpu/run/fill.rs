@@ -12,11 +12,9 @@ use crate::gpu::kernel::compiler::Compiler;
 use crate::gpu::kernel::shader::Module;
 use crate::gpu::kernel::spirv::Parsed;
 use crate::gpu::kernel::stage::{Resource, Stage};
+use crate::gpu::shared::SMALL_GROUP;
 use crate::misuse::check_colors;
 use crate::sampling::{Fill, NO_SAMPLE, Samples, flood_steps, packed};
-
-/// Invocations of a workgroup, which lie in a row.
-const GROUP: u32 = 64;
 
 /// The kernels that fill pictures.
 #[derive(Debug)]
@@ -148,8 +146,8 @@ fn bind(device: &Device, stage: &Stage, buffers: &[(&str, &wgpu::Buffer)]) -> wg
 /// Runs a kernel over all pixels, once for each group.
 fn run(device: &Device, stage: &Stage, samples: &Samples, groups: &[wgpu::BindGroup]) {
     let (width, height) = samples.size();
-    // A dispatch of its own for each, so that none is long.
+    // A dispatch of its own for each, so that none is long; workgroups lie in rows.
     for group in groups {
-        stage.dispatch(device, group, [width.div_ceil(GROUP), height]);
+        stage.dispatch(device, group, [width.div_ceil(SMALL_GROUP), height]);
     }
 }

@@ -18,16 +18,17 @@ use crate::gpu::kernel::shader::{Kernel, Module, Places, Slots, Storage, Walk};
 use crate::gpu::kernel::specialisation::Specialisation;
 use crate::gpu::kernel::spirv::Parsed;
 use crate::gpu::kernel::stage::{Resource, Stage};
+use crate::gpu::shared;
 use crate::gpu::table::layout::{Layout, ListValues, ParamValues, ShapeValues, double, single};
 use crate::gpu::table::pack::{bytes, low_light, low_shape, shape_value};
 use crate::scene::{Light, Sphere};
 
 /// Rays of a dispatch at the most: some milliseconds on the slowest device seen.
 const MAX_RAYS: usize = 1 << 16;
-/// Invocations of a workgroup, as in `shaders/probe.wgsl`.
-const GROUP: usize = 64;
-/// Numbers of an answer with the point of the hit, as there.
-const POINT_VALUES: usize = 13;
+/// Invocations of a workgroup.
+const GROUP: usize = shared::SMALL_GROUP as usize;
+/// Numbers of an answer with the point of the hit.
+const POINT_VALUES: usize = shared::POINT_VALUES as usize;
 
 /// One ray and what it can meet.
 #[derive(Debug, Clone, Copy)]
@@ -306,6 +307,7 @@ impl<'a> Prober<'a> {
             workgroup: 64,
             samples: 1,
             slots: Slots::Tiles,
+            dispatch_tiles: 0,
         };
         let constants = specialisation.constants();
         let stage = Stage::new(self.gpu.compiler(), &self.module, question.entry_point(), &constants)?;
@@ -370,11 +372,11 @@ impl<'a> Prober<'a> {
             mirrored: vector(at + 10),
         };
         answers.extend(flags.as_chunks::<2>().0.iter().enumerate().map(|(i, words)| Answer {
-            found: words[0] & 1 != 0,
-            inside: words[0] & 2 != 0,
-            finite: words[0] & 4 != 0,
-            facing: words[0] & 8 != 0,
-            blocked: words[0] & 16 != 0,
+            found: words[0] & shared::PROBE_FOUND != 0,
+            inside: words[0] & shared::PROBE_INSIDE != 0,
+            finite: words[0] & shared::PROBE_FINITE != 0,
+            facing: words[0] & shared::PROBE_FACING != 0,
+            blocked: words[0] & shared::PROBE_BLOCKED != 0,
             surface: words[1].wrapping_add(first),
             value: value(i * size),
             point: (size == POINT_VALUES).then(|| point(i * size)),

@@ -9,13 +9,12 @@ use crate::cache;
 use crate::gpu::device::error::Error;
 use crate::gpu::facade::Gpu;
 use crate::gpu::kernel::shader::{Kernel, Module};
+use crate::gpu::shared::SMALL_GROUP;
 use crate::gpu::table::layout::single::Params;
 use crate::precision::Tier;
 
 /// Pairs that are transformed.
 const PAIRS: usize = 1 << 18;
-/// Workgroup size of the kernel.
-const GROUP: usize = 64;
 
 /// How the device's error-free transforms compare with exact arithmetic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -133,7 +132,7 @@ fn transform(gpu: &Gpu, operands: &[[f32; 2]]) -> Result<Vec<u32>, Error> {
         inputs: &[("given_params", bytemuck::bytes_of(&params)), ("operands", bytemuck::cast_slice(operands))],
         output: "results",
         output_len: operands.len() * 4,
-        groups: (PAIRS / GROUP) as u32,
+        groups: PAIRS as u32 / SMALL_GROUP,
     };
     job.run(gpu.compiler())
 }

@@ -20,12 +20,7 @@ fn texture_usage(tables: Tables) -> Option<wgpu::TextureUsages> {
 }
 
 /// A table with `contents`, of so many `u32` a texel where it is a texture.
-pub(crate) fn table(
-    device: &Device,
-    tables: Tables,
-    contents: &Contents,
-    components: u32,
-) -> Result<Resource, Error> {
+pub(crate) fn table(device: &Device, tables: Tables, contents: &Contents, components: u32) -> Result<Resource, Error> {
     match texture_usage(tables) {
         None => storage_buffer(device, contents),
         Some(usage) => upload_texels(device, contents, components, usage).map(Resource::Texels),
@@ -152,12 +147,7 @@ fn too_large(sizes: &Sizes) -> Option<&(&'static str, usize, u64)> {
 }
 
 /// Refuses a scene whose tables are larger than the device's bindings and textures.
-pub(crate) fn check_fits(
-    device: &Device,
-    tables: Tables,
-    packed: &Packed,
-    lists: &[Contents; 2],
-) -> Result<(), Error> {
+pub(crate) fn check_fits(device: &Device, tables: Tables, packed: &Packed, lists: &[Contents; 2]) -> Result<(), Error> {
     let most = max_table(device, tables, 4);
     let mut sizes = list_sizes(device, tables, lists);
     sizes.extend([

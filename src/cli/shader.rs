@@ -1,0 +1,81 @@
+//! `trueray shader`.
+
+use std::path::PathBuf;
+
+use super::failure::{DEVICE_LOST, Failure, OK, USAGE};
+use super::input::Loaded;
+use super::options::{DeviceOptions, PictureOptions, open_device};
+use super::output::out;
+use super::sampling::SamplingOptions;
+use crate::gpu::{GpuRenderer, Options, Pixels, Rows, Specialisation};
+use crate::words::visible;
+
+/// Arguments of `trueray shader`.
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// Scene file; `-` is standard input
+    #[arg(value_name = "SCENE")]
+    scene: PathBuf,
+    /// The kernel, by its entry point; without it the one that casts the primary rays
+    #[arg(long, value_name = "NAME")]
+    entry: Option<String>,
+    /// Print the SPIR-V that the driver gets, disassembled, with the bindings' numbers of the WGSL
+    #[arg(long)]
+    spirv: bool,
+    #[command(flatten)]
+    picture: PictureOptions,
+    #[command(flatten)]
+    sampling: SamplingOptions,
+    #[command(flatten)]
+    device: DeviceOptions,
+}
+
+pub(super) fn run(args: &Args) -> u8 {
+    match print(args) {
+        Ok(()) => OK,
+        Err(failure) => failure.report(),
+    }
+}
+
+fn print(args: &Args) -> Result<(), Failure> {
+    if !args.device.uses_vulkan() {
+        return Err(Failure::new(USAGE, "the CPU reference runs no shader: `--device cpu` has none to print"));
+    }
+    let settings = args.picture.settings()?;
+    let mut loaded = Loaded::read(&args.scene, false)?;
+    args.picture.resize(&mut loaded.scene);
+    let scene = &loaded.scene;
+    let is_in_part = args.sampling.choice((scene.width, scene.height))?.is_some();
+    let effects = args.picture.renderable_effects(scene, &settings)?;
+    let gpu = open_device(&args.device.device)?;
+    let tier = args.device.selection(Some(&gpu), scene, &settings, &effects).tier;
+    let kernels = if is_in_part {
+        *GpuRenderer::<Pixels>::with(&gpu, scene, &settings, &effects, tier, &Options::default())?.specialisation()
+    } else {
+        *GpuRenderer::<Rows>::with(&gpu, scene, &settings, &effects, tier, &Options::default())?.specialisation()
+    };
+    let entry = chosen(args.entry.as_deref(), &kernels)?;
+    let comment = if args.spirv { ";" } else { "//" };
+    let names = kernels.entry_points().join(", ");
+    let text = if args.spirv {
+        kernels.spirv_text(entry).map_err(|error| Failure::new(DEVICE_LOST, error))?
+    } else {
+        kernels.wgsl(entry)
+    };
+    out!(
+        "{comment} {entry}, one of the kernels {names} of {} at {tier} on {}\n{text}",
+        visible(&loaded.name),
+        visible(&gpu.device.info.to_string())
+    );
+    Ok(())
+}
+
+/// The entry point that is asked for.
+fn chosen(name: Option<&str>, kernels: &Specialisation) -> Result<&'static str, Failure> {
+    let names = kernels.entry_points();
+    let found = name.map_or(names.first(), |name| names.iter().find(|known| **known == name));
+    found.copied().ok_or_else(|| {
+        let (name, names) = (visible(name.unwrap_or_default()), names.join(", "));
+        Failure::new(USAGE, format!("this picture has no kernel `{name}`\n  help: it has {names}"))
+    })
+}

@@ -1,0 +1,80 @@
+//! The numbers that the host and the shaders share: each is written once, here or where the rest of the host has it, and declared to
+//! the shaders whose heads ask for it.
+
+use crate::accel::{MAX_LARGE, REACH, WALK_SLACK};
+use crate::brightness::Scalar;
+use crate::sampling::{NO_SAMPLE, UNIT_WEIGHT};
+use crate::tiles::TILE;
+
+/// Pixels of a tile, and so invocations of a workgroup of the kernels over tiles.
+pub(super) const TILE_PIXELS: u32 = TILE * TILE;
+/// Bytes of a uniform that most devices bind, and that all do.
+pub(super) const UNIFORM: u64 = 1 << 16;
+pub(super) const LEAST_UNIFORM: u64 = 1 << 14;
+/// Storage buffers that kernels read and write beside the tables of a scene, at the most.
+pub(super) const LEAST_BUFFERS: u32 = 4;
+
+/// Tiles of a dispatch at the most on a device that binds so many bytes of a uniform: with their head, four words, they fill one.
+pub(super) const fn dispatch_tiles(uniform: u64) -> u32 {
+    let size = if uniform < UNIFORM { uniform } else { UNIFORM };
+    (size / 16 - 1) as u32 * 4
+}
+/// Invocations of a workgroup of the kernels that are neither over tiles nor tuned.
+pub(super) const SMALL_GROUP: u32 = 64;
+/// The binary logarithm of the texels in a row of a texture that stands for a buffer.
+pub(super) const ROW_BITS: u32 = 12;
+
+/// Words of the counts of workgroups of a bounce, and where those of the kernel with one path an invocation and of the one with
+/// several begin.
+pub(super) const WORKGROUP_WORDS: u32 = 6;
+pub(super) const ONE_PATH: u32 = 0;
+pub(super) const SEVERAL_PATHS: u32 = 3;
+
+/// The bits of a pixel's status byte: it is not finite; a loop has ended before its time; rounding could decide whether the primary
+/// ray touches a sphere. Those above are the number of the dispatch: whatever a dispatch has not written shows another one.
+pub(super) const STATUS_NOT_FINITE: u8 = 1;
+pub(super) const STATUS_CUT: u8 = 2;
+pub(super) const STATUS_TANGENT: u8 = 4;
+/// All of them.
+pub(super) const STATUS_FLAGS: u8 = 7;
+
+/// What an answer to a ray of a batch says, bit by bit.
+pub(super) const PROBE_FOUND: u32 = 1;
+pub(super) const PROBE_INSIDE: u32 = 2;
+pub(super) const PROBE_FINITE: u32 = 4;
+pub(super) const PROBE_FACING: u32 = 8;
+pub(super) const PROBE_BLOCKED: u32 = 16;
+/// Numbers of an answer with the point of the hit.
+pub(super) const POINT_VALUES: u32 = 13;
+
+/// What the shaders declare one of these numbers with, for a kernel of this scalar.
+pub(super) fn declaration(name: &str, scalar: Scalar) -> Option<String> {
+    let whole = |value: u32| format!("u32 = {value}u");
+    let real = |value: f64| format!("real = real({value:?})");
+    Some(match name {
+        "TILE" => whole(TILE),
+        "TILE_PIXELS" => whole(TILE_PIXELS),
+        "SMALL_GROUP" => whole(SMALL_GROUP),
+        "ROW_BITS" => whole(ROW_BITS),
+        "WORKGROUP_WORDS" => whole(WORKGROUP_WORDS),
+        "ONE_PATH" => whole(ONE_PATH),
+        "SEVERAL_PATHS" => whole(SEVERAL_PATHS),
+        "STATUS_NOT_FINITE" => whole(STATUS_NOT_FINITE.into()),
+        "STATUS_CUT" => whole(STATUS_CUT.into()),
+        "STATUS_TANGENT" => whole(STATUS_TANGENT.into()),
+        "STATUS_FLAGS" => whole(STATUS_FLAGS.into()),
+        "PROBE_FOUND" => whole(PROBE_FOUND),
+        "PROBE_INSIDE" => whole(PROBE_INSIDE),
+        "PROBE_FINITE" => whole(PROBE_FINITE),
+        "PROBE_FACING" => whole(PROBE_FACING),
+        "PROBE_BLOCKED" => whole(PROBE_BLOCKED),
+        "POINT_VALUES" => whole(POINT_VALUES),
+        "MAX_LARGE" => whole(MAX_LARGE as u32),
+        "NO_SAMPLE" => whole(NO_SAMPLE),
+        "UNIT_WEIGHT" => whole(UNIT_WEIGHT),
+        "MAX_THROUGHPUT" => real(scalar.max_throughput()),
+        "REACH" => real(REACH),
+        "WALK_SLACK" => real(WALK_SLACK),
+        _ => return None,
+    })
+}
