@@ -8,14 +8,14 @@ use super::failure::{DIFFERENT, Failure, OK, USAGE};
 use super::guard::Guard;
 use super::input::Input;
 use super::named::format_by_ending;
-use super::options::{DeviceOptions, PictureOptions, device_name, open_device};
+use super::options::{DeviceOptions, PictureOptions, open_device};
 use super::output::{errln, out, outln};
 use crate::compare::{
     Band, Difference, Explanation, Limits, SCALE, SizeMismatch, Verdict, heatmap, three_wide, verdict,
 };
 use crate::cpu::{Judge, Reference};
 use crate::effects::Effects;
-use crate::engine::{Backend, Engine, render_picture};
+use crate::engine::{Backend, Engine, device_name, render_picture};
 use crate::film::{Encoded, Leniency, Picture, ReadError, Target};
 use crate::gpu::Choice;
 use crate::scene::Scene;
@@ -267,7 +267,7 @@ fn judge_of_unknown(
         // The picture is there without a device, too.
         Choice::Auto => open_device(&Choice::Auto)
             .inspect_err(|error| {
-                errln!("trueray: judged as a picture of hardware, since no device can be used here: {error}")
+                errln!("trueray: judged as a picture of hardware, since no device can be used here: {error}");
             })
             .ok(),
         choice => Some(open_device(choice)?),

@@ -7,7 +7,7 @@ use super::failure::{Failure, OK};
 use super::files::{command, save, save_json, seconds};
 use super::guard::Guard;
 use super::input::Loaded;
-use super::options::{DeviceOptions, PictureOptions, samples_side};
+use super::options::{DeviceOptions, PictureOptions, samples_per_side};
 use super::output::{errln, out};
 use super::progress::{Progress, Style};
 use super::signals::{say_last, say_nothing};
@@ -30,7 +30,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(0..=i64::from(Settings::MAX_DEPTH)))]
     depths: Vec<u32>,
     /// Samples per pixel to compare: square numbers
-    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "1,4,16", value_parser = samples_side)]
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "1,4,16", value_parser = samples_per_side)]
     spp_list: Vec<u32>,
     /// Rays of each hard case, on which the intersection kernels are compared once, if a Vulkan device is used; 0 leaves
     /// them out

@@ -13,7 +13,9 @@ const LOOK: Duration = Duration::from_secs(1);
 pub(super) fn watch() -> Result<(), Failure> {
     if let Some(value) = std::env::var_os(PATIENCE) {
         let seconds = value.to_str().and_then(|text| text.parse().ok()).filter(|&seconds| seconds > 0);
-        let wrong = || Failure::new(USAGE, format!("{PATIENCE} is {value:?} and has to be a whole number of seconds"));
+        let wrong = || {
+            Failure::new(USAGE, format!("{PATIENCE} is '{}' and has to be a whole number of seconds", value.display()))
+        };
         calls::set_patience(seconds.ok_or_else(wrong)?);
     }
     let _ = Builder::new().name("watchdog".into()).spawn(look);

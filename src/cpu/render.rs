@@ -88,7 +88,7 @@ impl<T: Real> Reference<T> {
         for color in samples {
             excess += color - first;
         }
-        let side = self.camera.samples();
+        let side = self.camera.samples_per_side();
         if side == 1 {
             return first;
         }
@@ -98,7 +98,7 @@ impl<T: Real> Reference<T> {
 
     /// The rays of all samples of pixel (column `i`, row `j`), row by row.
     pub(super) fn primaries(&self, i: u32, j: u32) -> impl Iterator<Item = Primary<'_, T>> {
-        let side = self.camera.samples();
+        let side = self.camera.samples_per_side();
         let seen = self.world.accel.screen.at(i, j);
         (0..side * side).map(move |s| {
             let sample = [i * side + s % side, j * side + s / side];
@@ -116,7 +116,7 @@ impl<T: Real> Reference<T> {
         const CHUNK: usize = 256;
         check_rows(self.size(), first, rgb.len())?;
         let width = self.camera.width() as usize;
-        let samples = u64::from(self.camera.samples() * self.camera.samples());
+        let samples = u64::from(self.camera.samples_per_side() * self.camera.samples_per_side());
         let chunk = |(chunk, pixels): (usize, &mut [u8])| {
             let mut tally = Tally::default();
             for (k, pixel) in pixels.as_chunks_mut::<3>().0.iter_mut().enumerate() {
@@ -139,7 +139,7 @@ impl<T: Real> Reference<T> {
     /// [`Misuse::Pixel`] where a pixel is not of the picture, [`Misuse::Colors`] where there is not one colour for each.
     pub fn pixels(&self, pixels: &[[u32; 2]], colors: &mut [[u8; 3]]) -> Result<Tally, Misuse> {
         check_pixels(self.size(), pixels, colors.len())?;
-        let samples = u64::from(self.camera.samples() * self.camera.samples());
+        let samples = u64::from(self.camera.samples_per_side() * self.camera.samples_per_side());
         let each = |(&[i, j], target): (&[u32; 2], &mut [u8; 3])| {
             let mut tally = Tally::default();
             let color = self.pixel_color(i, j, &mut tally);

@@ -228,8 +228,8 @@ pub fn watched(subject: &Subject, plan: &Plan, mut hear: impl FnMut(Event)) -> R
     })?;
     hear(Event::Measured(&study));
 
-    let with_side = |samples| Settings { samples, ..base };
-    let finer = with_side((plan.sides.iter().max().copied().unwrap_or(1) * 2).min(Settings::MAX_SAMPLES));
+    let with_side = |samples| Settings { samples_per_side: samples, ..base };
+    let finer = with_side((plan.sides.iter().max().copied().unwrap_or(1) * 2).min(Settings::MAX_SAMPLES_PER_SIDE));
     let variants: Vec<_> = plan.sides.iter().map(|&side| with_side(side)).collect();
     study.samples = series(subject, plan, &mut contestants, &mut study.skipped, &variants, Some(finer), |within| {
         hear(Event::Done((2.0 + within) / PARTS));
@@ -245,7 +245,7 @@ pub fn watched(subject: &Subject, plan: &Plan, mut hear: impl FnMut(Event)) -> R
     let one_ms =
         study.precision.points.iter().find(|point| point.contestant == main).map_or(0.0, |point| point.wall.median());
     let variants_ms = one_ms * (Effect::ALL.len() + 2) as f64;
-    let backend = gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, selection.tier));
+    let backend = Backend::of(gpu, selection.tier);
     study.effect_cost = effect_cost(backend, scene, settings, plan.affordable(variants_ms))?;
     hear(Event::Measured(&study));
     Ok(study)
@@ -295,7 +295,8 @@ fn series(
     }
     Ok(Series {
         runs,
-        truth: truth.map(|(settings, _)| Truth { depth: settings.max_depth, samples: settings.samples.pow(2) }),
+        truth: truth
+            .map(|(settings, _)| Truth { depth: settings.max_depth, samples: settings.samples_per_side.pow(2) }),
         points: measured.into_iter().map(|(_, point)| point).collect(),
     })
 }
@@ -330,7 +331,7 @@ fn warm_up<'a>(
     let point = Point {
         contestant,
         depth: settings.max_depth,
-        samples: settings.samples.pow(2),
+        samples: settings.samples_per_side.pow(2),
         wall: Sample::default(),
         on_device: run.device_ms.map(|_| Sample::default()),
         not_finite: run.not_finite,

@@ -106,7 +106,7 @@ impl Runner<'_> {
 /// Measures the full picture, sparse ones and foveated ones.
 pub(super) fn partial_series(subject: &Subject, plan: &Plan) -> Result<PartialSeries, Error> {
     let Subject { scene, settings, gpu, selection, .. } = *subject;
-    let backend = gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, selection.tier));
+    let backend = Backend::of(gpu, selection.tier);
     let effects = (subject.effects)(settings);
     let size = (scene.width, scene.height);
     let mut series = PartialSeries::none(size);

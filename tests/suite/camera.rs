@@ -219,7 +219,7 @@ proptest! {
         let side = |low: f64, size: f64, flip| if flip { (low + size, low) } else { (low, low + size) };
         (scene.window.left, scene.window.right) = side(window[0], size[0], flip[0]);
         (scene.window.bottom, scene.window.top) = side(window[1], size[1], flip[1]);
-        let settings = Settings { sampling, samples, view, ..Settings::classic() };
+        let settings = Settings { sampling, samples_per_side: samples, view, ..Settings::classic() };
         let density = Density { longest_tile, ..Density::DEFAULT };
         let camera = Camera::new(&scene, &settings);
 

@@ -165,10 +165,10 @@ fn settings() -> impl Strategy<Value = Settings> {
     let quantize = proptest::sample::select(vec![Quantize::Truncate, Quantize::Round, Quantize::Overscale]);
     let depth = proptest::sample::select(vec![0, 1, 3, 6]);
     (any::<bool>(), sampling, quantize, any::<bool>(), depth, 1..3_u32).prop_map(
-        |(is_exact, sampling, quantize, is_blinn, max_depth, samples)| {
+        |(is_exact, sampling, quantize, is_blinn, max_depth, samples_per_side)| {
             let base = if is_exact { Settings::exact() } else { Settings::classic() };
             let specular = if is_blinn { Specular::Blinn } else { Specular::Phong };
-            Settings { sampling, quantize, specular, max_depth, samples, ..base }
+            Settings { sampling, quantize, specular, max_depth, samples_per_side, ..base }
         },
     )
 }

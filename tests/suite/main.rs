@@ -29,15 +29,17 @@ mod magnitudes;
 mod messages;
 mod misuse;
 mod oracle;
+#[cfg(feature = "view")]
+mod page;
 mod parse;
 mod phong;
 mod pictures;
+#[cfg(feature = "view")]
+mod preview;
 mod rays;
 mod refraction;
 mod sampling;
 mod shaders;
-#[cfg(feature = "view")]
-mod sketch;
 mod stress;
 mod study;
 mod support;

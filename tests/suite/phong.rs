@@ -434,7 +434,7 @@ fn a_pixel_is_the_mean_of_its_samples() {
                 sum += ambient(&material);
             }
             let case = case(format!("{side} x {side}"), AXIS, statements, sum / f64::from(side * side));
-            cases.push(case.only(&name).with(|settings| settings.samples = side));
+            cases.push(case.only(&name).with(|settings| settings.samples_per_side = side));
         }
     }
     check("a_pixel_is_the_mean_of_its_samples", &cases, Ways::Tuned);
