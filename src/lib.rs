@@ -22,6 +22,7 @@ pub mod export;
 pub mod film;
 pub mod geometry;
 pub mod gpu;
+mod hash;
 pub mod limits;
 pub mod misuse;
 mod panics;

@@ -11,7 +11,7 @@ use crate::view::View;
 /// Where in its pixel a sample lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ValueEnum)]
 #[serde(rename_all = "kebab-case")]
-pub enum Sampling {
+pub enum SampleOffset {
     /// The top-left corner, offsets (0, 0): what the official pictures pin.
     Corner,
     /// The bottom-left corner, offsets (0, 1): the second most common course template.
@@ -20,7 +20,7 @@ pub enum Sampling {
     Center,
 }
 
-impl Sampling {
+impl SampleOffset {
     /// Offsets (sx, sy) within the pixel, x to the right and y downwards, each in 0..=1.
     pub fn offset(self) -> (f64, f64) {
         match self {
@@ -128,7 +128,7 @@ pub struct Settings {
     /// Where the eye is and where it looks.
     pub view: View,
     /// Sample position within the pixel.
-    pub sampling: Sampling,
+    pub sampling: SampleOffset,
     /// Rounding of the 8-bit value.
     pub quantize: Quantize,
     /// Least distances of shadow and reflection rays.
@@ -166,7 +166,7 @@ impl Settings {
     pub fn classic() -> Self {
         Self {
             view: View::FILE,
-            sampling: Sampling::Corner,
+            sampling: SampleOffset::Corner,
             quantize: Quantize::Truncate,
             secondary: Secondary::CLASSIC,
             specular: Specular::Phong,
@@ -190,7 +190,12 @@ impl Settings {
 
     /// The convention that the physics asks for.
     pub fn exact() -> Self {
-        Self { sampling: Sampling::Center, quantize: Quantize::Round, secondary: Secondary::EXACT, ..Self::classic() }
+        Self {
+            sampling: SampleOffset::Center,
+            quantize: Quantize::Round,
+            secondary: Secondary::EXACT,
+            ..Self::classic()
+        }
     }
 }
 

@@ -10,7 +10,7 @@ use crate::gpu::{Choice, Error, Gpu};
 use crate::limits;
 use crate::precision::{self, Selection, Tier};
 use crate::scene::{Scene, resolution};
-use crate::settings::{Convention, Quantize, Sampling, Secondary, Settings, Specular};
+use crate::settings::{Convention, Quantize, SampleOffset, Secondary, Settings, Specular};
 use crate::view::View;
 #[cfg(feature = "view")]
 use crate::viewer::{FlightScale, Pose, ViewState};
@@ -23,7 +23,7 @@ pub(super) struct PictureOptions {
     convention: Convention,
     /// Where in its pixel the sample lies
     #[arg(long, value_enum)]
-    sampling: Option<Sampling>,
+    sampling: Option<SampleOffset>,
     /// How a colour becomes an 8-bit level
     #[arg(long, value_enum)]
     quantize: Option<Quantize>,

@@ -79,21 +79,10 @@ impl<T: Real> Reference<T> {
         (i < width && j < height).then(|| self.pixel_color(i, j, &mut ()).to_f64())
     }
 
-    /// The colour of a pixel: the mean over its samples, row by row, unclamped; read it beside `shaders/main.wgsl`. Taken
-    /// from differences to the first sample, it is exact where all are equal.
+    /// The unclamped colour of a pixel.
     fn pixel_color<W: Witness<T>>(&self, i: u32, j: u32, witness: &mut W) -> Vec3<T> {
-        let mut samples = self.primaries(i, j).map(|primary| trace(&self.world, &primary, witness));
-        let Some(first) = samples.next() else { return Vec3::ZERO };
-        let mut excess = Vec3::ZERO;
-        for color in samples {
-            excess += color - first;
-        }
-        let side = self.camera.samples_per_side();
-        if side == 1 {
-            return first;
-        }
-        let count = T::from_f64(f64::from(side * side));
-        first + Vec3::new(excess.x / count, excess.y / count, excess.z / count)
+        let samples = self.primaries(i, j).map(|primary| trace(&self.world, &primary, witness));
+        resolve(samples, self.camera.samples_per_side())
     }
 
     /// The rays of all samples of pixel (column `i`, row `j`), row by row.
@@ -149,6 +138,22 @@ impl<T: Real> Reference<T> {
         };
         Ok(pixels.par_iter().zip(colors).with_min_len(256).map(each).reduce(Tally::default, Tally::plus))
     }
+}
+
+/// The mean over a pixel's samples, row by row, `side` of them in each. Taken from differences to the first sample, it is exact
+/// where all are equal.
+#[inline]
+fn resolve<T: Real>(mut samples: impl Iterator<Item = Vec3<T>>, side: u32) -> Vec3<T> {
+    let Some(first) = samples.next() else { return Vec3::ZERO };
+    let mut excess = Vec3::ZERO;
+    for color in samples {
+        excess += color - first;
+    }
+    if side == 1 {
+        return first;
+    }
+    let count = T::from_f64(f64::from(side * side));
+    first + Vec3::new(excess.x / count, excess.y / count, excess.z / count)
 }
 
 /// The 8-bit RGB of an unclamped colour, calculated in its scalar; NaN becomes 0. Read it beside `shaders/quantize.wgsl`.

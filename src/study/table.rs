@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use super::error::Distance;
 use super::measure::{Point, Series, Study};
 use super::sampling::PartialPoint;
-use crate::report::Sample;
+use crate::report::Timings;
 use crate::report::csv::record;
 use crate::report::number::{short, time};
 use crate::settings::Settings;
@@ -161,7 +161,7 @@ pub fn csv(studies: &[Study]) -> String {
     text
 }
 
-fn times(sample: &Sample) -> [String; 5] {
+fn times(sample: &Timings) -> [String; 5] {
     [
         sample.runs().len().to_string(),
         sample.median().to_string(),
@@ -171,7 +171,7 @@ fn times(sample: &Sample) -> [String; 5] {
     ]
 }
 
-fn runs(sample: &Sample) -> String {
+fn runs(sample: &Timings) -> String {
     sample.runs().iter().map(ToString::to_string).collect::<Vec<_>>().join(" ")
 }
 
@@ -182,7 +182,7 @@ fn fields(name: &str, series: &Series, point: &Point) -> Vec<String> {
         vec![name.to_owned(), point.contestant.name().to_owned(), point.depth.to_string(), point.samples.to_string()];
     fields.extend(times(&point.wall));
     fields.extend([
-        optional(point.on_device.as_ref().map(Sample::median)),
+        optional(point.on_device.as_ref().map(Timings::median)),
         point.error.differing.to_string(),
         point.error.max_level.to_string(),
         point.error.mean_level.to_string(),

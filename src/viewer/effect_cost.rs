@@ -9,7 +9,7 @@ const ROUNDS: usize = 4;
 
 /// What an effect costs.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct EffectCost {
+pub struct EffectTimes {
     /// Which.
     pub effect: Effect,
     /// Least time with it, in ms.
@@ -21,7 +21,7 @@ pub struct EffectCost {
 /// A measurement on its way: one picture a step.
 #[derive(Debug, Default)]
 pub(super) struct CostMeasurement {
-    costs: Vec<EffectCost>,
+    costs: Vec<EffectTimes>,
     /// Pictures of the effect at hand so far.
     pictures: usize,
 }
@@ -43,10 +43,10 @@ impl CostMeasurement {
     }
 
     /// Notes the time of the picture, in ms; after the last one of all the table.
-    pub(super) fn note(&mut self, time: f64) -> Option<&[EffectCost]> {
+    pub(super) fn note(&mut self, time: f64) -> Option<&[EffectTimes]> {
         let effect = self.effect();
         if self.pictures == 0 {
-            self.costs.push(EffectCost { effect, with_ms: f64::INFINITY, without_ms: f64::INFINITY });
+            self.costs.push(EffectTimes { effect, with_ms: f64::INFINITY, without_ms: f64::INFINITY });
         }
         if let Some(cost) = self.costs.last_mut().filter(|_| self.pictures >= 2) {
             let least = if self.pictures.is_multiple_of(2) { &mut cost.with_ms } else { &mut cost.without_ms };

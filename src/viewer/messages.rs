@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::effect_cost::EffectCost;
+use super::effect_cost::EffectTimes;
 use super::preview::PreviewOptions;
 use super::scene_file::SceneError;
 use crate::effects;
@@ -22,7 +22,7 @@ pub enum PageMessage<'a> {
     /// What the effects cost, as was asked for.
     Costs {
         /// One for each effect.
-        effects: &'a [EffectCost],
+        effects: &'a [EffectTimes],
     },
     /// There is no device, and it is tried again.
     Lost {

@@ -27,7 +27,7 @@ mod view_state;
 mod wake_signal;
 
 pub use canvas::Canvas;
-pub use effect_cost::EffectCost;
+pub use effect_cost::EffectTimes;
 pub use messages::{Controls, PageMessage, PageState, PickedHit, PickedPixel, SampledPart, SceneSummary};
 pub use patch::{PATCH, PICTURE_FILE, Patch, Rectangle};
 pub use pose::{FlightScale, Pose};

@@ -2,6 +2,8 @@
 //!
 //! `TRUERAY_FUZZ_CASES` is the number of cases of each test; the default only keeps the tests themselves in order.
 
+use std::fmt::Write as _;
+
 use proptest::prelude::*;
 use proptest::sample::Index;
 use proptest::test_runner::{Config, TestRunner};
@@ -12,7 +14,7 @@ use trueray::film::{Encoded, Leniency, decode};
 use trueray::limits;
 use trueray::precision::{Request, Selection, Tier};
 use trueray::scene::{foreign_kind, parse};
-use trueray::settings::{Quantize, Sampling, Settings, Specular};
+use trueray::settings::{Quantize, SampleOffset, Settings, Specular};
 
 const CASES: u32 = 500;
 
@@ -150,18 +152,18 @@ fn hostile_scene() -> impl Strategy<Value = String> {
         let mut text = format!("NEAR {near}\n{window}\nRES 5 4\nAMBIENT 0.2 0.2 0.2\nBACK {}\n", back.join(" "));
         for (index, (center, sides, color, weights, exponent, glass)) in spheres.iter().enumerate() {
             let (sides, color, weights) = (sides.join(" "), color.join(" "), weights.join(" "));
-            text += &format!("SPHERE s{index} {center} {sides} {color} {weights} {exponent}");
+            write!(text, "SPHERE s{index} {center} {sides} {color} {weights} {exponent}").unwrap();
             text += &glass.map_or("\n".into(), |(kt, ior)| format!(" {kt} {ior}\n"));
         }
         for (index, (position, color)) in lights.iter().enumerate() {
-            text += &format!("LIGHT l{index} {position} {}\n", color.join(" "));
+            writeln!(text, "LIGHT l{index} {position} {}", color.join(" ")).unwrap();
         }
         text
     })
 }
 
 fn settings() -> impl Strategy<Value = Settings> {
-    let sampling = proptest::sample::select(vec![Sampling::Corner, Sampling::BottomLeft, Sampling::Center]);
+    let sampling = proptest::sample::select(vec![SampleOffset::Corner, SampleOffset::BottomLeft, SampleOffset::Center]);
     let quantize = proptest::sample::select(vec![Quantize::Truncate, Quantize::Round, Quantize::Overscale]);
     let depth = proptest::sample::select(vec![0, 1, 3, 6]);
     (any::<bool>(), sampling, quantize, any::<bool>(), depth, 1..3_u32).prop_map(

@@ -45,6 +45,7 @@ mod study;
 mod support;
 mod tangents;
 mod tuning;
+mod twins;
 mod verify;
 #[cfg(feature = "view")]
 mod view;

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde_json::{Value, json, to_value};
 use trueray::effects::Effect;
 use trueray::sampling::{Density, Fovea};
-use trueray::viewer::{EffectCost, PageMessage, PageRequest, PickedHit, PickedPixel, SampledPart, SceneError};
+use trueray::viewer::{EffectTimes, PageMessage, PageRequest, PickedHit, PickedPixel, SampledPart, SceneError};
 
 use crate::view::{SCENE, Work};
 
@@ -25,7 +25,7 @@ fn messages() -> BTreeMap<&'static str, Value> {
     state["problem"] = "the depth is 1000 at the most".into();
     let hit = PickedHit { sphere: 0, name: "a", t: 8.0, position: [0.0; 3], inside: false };
     let pixel = PageMessage::Pixel(PickedPixel { x: 1, y: 2, rgb: Some([3; 3]), hit: Some(hit) });
-    let cost = EffectCost { effect: Effect::Shadows, with_ms: 2.0, without_ms: 1.0 };
+    let cost = EffectTimes { effect: Effect::Shadows, with_ms: 2.0, without_ms: 1.0 };
     let told = |message: &PageMessage| to_value(message).unwrap();
     BTreeMap::from([
         ("row", state["effects"][0].clone()),
