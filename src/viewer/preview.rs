@@ -35,8 +35,8 @@ impl PreviewOptions {
     pub const DENSITIES: [f64; 2] = [1.0 / 64.0, 1.0];
 
     /// Does what the page asks; a message says why it cannot be.
-    pub(super) fn apply(&mut self, message: &PageRequest) -> Result<(), String> {
-        match message {
+    pub(super) fn apply(&mut self, request: &PageRequest) -> Result<(), String> {
+        match request {
             PageRequest::Gaze { x, y } => self.gaze = [x, y].map(|part| part.clamp(0.0, 1.0)),
             PageRequest::Preview { mode, least, radius, falloff } => {
                 let mut preview = *self;
