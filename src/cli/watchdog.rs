@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use super::failure::{DEVICE_LOST, Failure, USAGE};
 use crate::gpu::calls::{self, PATIENCE};
+use crate::words::visible;
 
 /// The time between two looks; time in which the process was stopped counts as one of them.
 const LOOK: Duration = Duration::from_secs(1);
@@ -14,7 +15,10 @@ pub(super) fn watch() -> Result<(), Failure> {
     if let Some(value) = std::env::var_os(PATIENCE) {
         let seconds = value.to_str().and_then(|text| text.parse().ok()).filter(|&seconds| seconds > 0);
         let wrong = || {
-            Failure::new(USAGE, format!("{PATIENCE} is '{}' and has to be a whole number of seconds", value.display()))
+            Failure::new(
+                USAGE,
+                format!("{PATIENCE} is `{}`: expected a whole number of seconds", visible(&value.to_string_lossy())),
+            )
         };
         calls::set_patience(seconds.ok_or_else(wrong)?);
     }

@@ -1,4 +1,5 @@
-//! A pixel's colour: the primary ray and its chain of reflections.
+//! A pixel's colour: the primary ray and its chain of reflections; read it beside `shaders/stages.wgsl` and
+//! `shaders/paths.wgsl`.
 
 use super::intersect::{Hit, Primary, Ray, nearest_secondary, nearest_seen};
 use super::real::Real;

@@ -1,4 +1,5 @@
-//! A pixel's colour where something refracts: the primary ray and its tree of reflections and refractions.
+//! A pixel's colour where something refracts: the primary ray and its tree of reflections and refractions; read it beside
+//! `shaders/trees.wgsl`.
 
 use super::intersect::{Own, Primary, Ray, nearest_secondary, nearest_seen};
 use super::real::Real;
