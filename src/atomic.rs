@@ -32,20 +32,20 @@ pub(crate) fn abandon_all() {
 
 /// Writes a whole file of a cache, whose loss would not matter.
 pub(crate) fn save(path: &Path, parts: &[&[u8]]) -> io::Result<()> {
-    let (mut file, place) = begin(path, None)?;
+    let (mut file, destination) = begin(path, None)?;
     parts.iter().try_for_each(|part| file.write_all(part))?;
-    place.take()
+    destination.commit()
 }
 
 /// Begins the file that is to be at `path`, with the permissions of the one that it replaces.
-pub(crate) fn begin(path: &Path, replaced: Option<Permissions>) -> io::Result<(Part, Place)> {
+pub(crate) fn begin(path: &Path, replaced: Option<Permissions>) -> io::Result<(Part, Destination)> {
     let (file, temporary) = create(path)?;
-    let place = Place { file, temporary, path: path.to_owned(), replaced };
-    let part = Part { file: place.file.try_clone()?, unsynced: place.replaced.as_ref().map(|_| 0) };
-    Ok((part, place))
+    let destination = Destination { file, temporary, path: path.to_owned(), replaced };
+    let part = Part { file: destination.file.try_clone()?, unsynced: destination.replaced.as_ref().map(|_| 0) };
+    Ok((part, destination))
 }
 
-/// The bytes of a file that has not its place yet.
+/// The bytes of a file that has not its destination yet.
 #[derive(Debug)]
 pub(crate) struct Part {
     file: File,
@@ -76,7 +76,7 @@ impl Write for Part {
 
 /// The place that a file takes when it is complete; dropped before, the file is gone.
 #[derive(Debug)]
-pub(crate) struct Place {
+pub(crate) struct Destination {
     /// Both handles hold the lock: the file has it until it has its place.
     file: File,
     temporary: PathBuf,
@@ -84,9 +84,9 @@ pub(crate) struct Place {
     replaced: Option<Permissions>,
 }
 
-impl Place {
+impl Destination {
     /// Puts the file, which is complete, in its place.
-    pub(crate) fn take(mut self) -> io::Result<()> {
+    pub(crate) fn commit(mut self) -> io::Result<()> {
         if let Some(permissions) = self.replaced.take() {
             // Without this a power failure can leave the new name with nothing behind it, where there was a file before.
             self.file.sync_data()?;
@@ -99,7 +99,7 @@ impl Place {
     }
 }
 
-impl Drop for Place {
+impl Drop for Destination {
     fn drop(&mut self) {
         let mut pending = pending();
         // What is no longer pending has its place, and its old name may be another process's by now.

@@ -3,6 +3,8 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
+use crate::hash::{EMPTY, fnv1a};
+
 /// The program's own folder in the user's cache folder; `None` where there is no such place. It need not exist yet.
 pub(crate) fn folder() -> Option<PathBuf> {
     folder_in(std::env::var_os("XDG_CACHE_HOME"), std::env::var_os("HOME"))
@@ -18,12 +20,10 @@ fn folder_in(cache: Option<OsString>, home: Option<OsString>) -> Option<PathBuf>
     cache.is_absolute().then(|| cache.join("trueray"))
 }
 
-/// A name for what belongs to these texts together: FNV-1a. A collision would need two of them on one machine.
+/// A name for what belongs to these texts together. A collision would need two of them on one machine.
 pub(crate) fn key(parts: &[&str]) -> String {
     let bytes = parts.iter().flat_map(|part| part.bytes().chain([0]));
-    let hash =
-        bytes.fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
-    format!("{hash:016x}")
+    format!("{:016x}", fnv1a(EMPTY, bytes))
 }
 
 #[cfg(test)]

@@ -18,7 +18,7 @@ const COMMON_WINDOW: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
 /// power of two, [`Camera::stretch`], which keeps squares of directions within the range of `f32` for windows of any size. So
 /// τ·`stretch` = 1 lies on the image plane; it is 1 for usual windows.
 ///
-/// Each pixel is cut into k × k equal cells, k being [`Settings::samples`], and each cell has one sample where the
+/// Each pixel is cut into k × k equal cells, k being [`Settings::samples_per_side`], and each cell has one sample where the
 /// convention places it: with centre sampling in the middle of the cell, at offsets (s + ½)/k from the pixel's left and
 /// top, with corner sampling at the cell's corner, at offsets s/k, for s in 0..k. Sample column i lies in pixel column
 /// ⌊i/k⌋, and k = 1 is one sample a pixel at the convention's own offset. The samples of corner conventions have their mean
@@ -31,7 +31,7 @@ pub struct Camera {
     width: u32,
     height: u32,
     offset: (f64, f64),
-    samples: u32,
+    samples_per_side: u32,
     stretch: f64,
 }
 
@@ -44,7 +44,7 @@ impl Camera {
             width: scene.width,
             height: scene.height,
             offset: settings.sampling.offset(),
-            samples: settings.samples,
+            samples_per_side: settings.samples_per_side,
             stretch: 1.0,
         };
         let greatest = camera.greatest();
@@ -74,12 +74,12 @@ impl Camera {
 
     /// x on the image plane of sample column `i` (0 = left).
     pub fn x(&self, i: u32) -> f64 {
-        self.x_at((f64::from(i) + self.offset.0) / f64::from(self.samples))
+        self.x_at((f64::from(i) + self.offset.0) / f64::from(self.samples_per_side))
     }
 
     /// y on the image plane of sample row `j` (0 = top).
     pub fn y(&self, j: u32) -> f64 {
-        self.y_at((f64::from(j) + self.offset.1) / f64::from(self.samples))
+        self.y_at((f64::from(j) + self.offset.1) / f64::from(self.samples_per_side))
     }
 
     /// x on the image plane at `i` pixel widths from the left edge.
@@ -113,7 +113,7 @@ impl Camera {
     }
 
     fn samples_from(&self, offset: f64) -> [f64; 2] {
-        let side = f64::from(self.samples);
+        let side = f64::from(self.samples_per_side);
         [offset / side, (side - 1.0 + offset) / side]
     }
 
@@ -128,8 +128,8 @@ impl Camera {
     }
 
     /// Side k of the grid of samples in a pixel.
-    pub fn samples(&self) -> u32 {
-        self.samples
+    pub fn samples_per_side(&self) -> u32 {
+        self.samples_per_side
     }
 
     /// The greatest coordinate of a point on the window.

@@ -18,6 +18,8 @@ use crate::tiles::TILE;
 use crate::verify::{Verifier, Verify};
 
 pub use crate::gpu::{Options, Output, Pixels, Rows};
+#[cfg(feature = "view")]
+pub(crate) use partial::put_pixels;
 pub use partial::{Filler, PartialPicture, render_partial};
 
 /// Bytes of one band of rows at the most, unless a single row of tiles takes more.
@@ -64,7 +66,12 @@ pub enum Backend<'a> {
     Device(&'a Gpu, Tier),
 }
 
-impl Backend<'_> {
+impl<'a> Backend<'a> {
+    /// The kernel of a tier on `gpu`; without one the reference.
+    pub fn of(gpu: Option<&'a Gpu>, tier: Tier) -> Self {
+        gpu.map_or(Self::Reference, |gpu| Self::Device(gpu, tier))
+    }
+
     /// The judge of this renderer's pixels.
     pub fn judge(&self) -> Judge {
         match self {
@@ -74,6 +81,11 @@ impl Backend<'_> {
             Self::Device(_, tier) => Judge::of(*tier),
         }
     }
+}
+
+/// How the device of a picture is called in messages.
+pub(crate) fn device_name(gpu: Option<&Gpu>) -> String {
+    gpu.map_or_else(|| "the CPU reference (f64)".to_owned(), |gpu| gpu.device.info.to_string())
 }
 
 /// A renderer with a scene: of [`Rows`] of its picture, or of lists of its [`Pixels`].
@@ -359,6 +371,6 @@ pub fn render_picture(engine: &mut Engine) -> Result<(Vec<u8>, u64), gpu::Error>
     Ok((picture, not_finite))
 }
 
-fn ms(duration: Duration) -> f64 {
+pub(crate) fn ms(duration: Duration) -> f64 {
     duration.as_secs_f64() * 1e3
 }

@@ -84,7 +84,7 @@ impl ExactCamera {
         let window = scene.window;
         let [left, right, top, bottom] = [window.left, window.right, window.top, window.bottom].map(exact);
         let [columns, rows] =
-            [scene.width, scene.height].map(|size| RBig::from(u64::from(size) * u64::from(settings.samples)));
+            [scene.width, scene.height].map(|size| RBig::from(u64::from(size) * u64::from(settings.samples_per_side)));
         let (x, y) = settings.sampling.offset();
         Self {
             eye: vector(settings.view.eye),

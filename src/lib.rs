@@ -70,6 +70,7 @@ pub mod film;
 pub mod geometry;
 #[doc(hidden)]
 pub mod gpu;
+mod hash;
 #[doc(hidden)]
 pub mod limits;
 #[doc(hidden)]

@@ -71,7 +71,7 @@ pub(crate) fn check_picture(scene: &Scene, settings: &Settings) -> Result<(), Mi
     let numbers = [
         ("width", scene.width, 1..=MAX_RESOLUTION),
         ("height", scene.height, 1..=MAX_RESOLUTION),
-        ("samples", settings.samples, 1..=Settings::MAX_SAMPLES),
+        ("samples", settings.samples_per_side, 1..=Settings::MAX_SAMPLES_PER_SIDE),
         ("max_depth", settings.max_depth, 0..=Settings::MAX_DEPTH),
     ];
     match numbers.into_iter().find(|(_, number, range)| !range.contains(number)) {

@@ -1,14 +1,17 @@
 //! What decides the picture besides the scene: conventions, depth, samples.
 
+use std::str::FromStr;
+
+use clap::ValueEnum;
 use glam::DVec3;
 use serde::Serialize;
 
 use crate::view::View;
 
 /// Where in its pixel a sample lies.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ValueEnum)]
 #[serde(rename_all = "kebab-case")]
-pub enum Sampling {
+pub enum SampleOffset {
     /// The top-left corner, offsets (0, 0): what the official pictures pin.
     Corner,
     /// The bottom-left corner, offsets (0, 1): the second most common course template.
@@ -17,7 +20,7 @@ pub enum Sampling {
     Center,
 }
 
-impl Sampling {
+impl SampleOffset {
     /// Offsets (sx, sy) within the pixel, x to the right and y downwards, each in 0..=1.
     pub fn offset(self) -> (f64, f64) {
         match self {
@@ -29,7 +32,7 @@ impl Sampling {
 }
 
 /// How a colour in 0..=1 becomes an 8-bit level.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum Quantize {
     /// ⌊255·c⌋.
@@ -38,6 +41,7 @@ pub enum Quantize {
     Round,
     /// ⌊255.9·c⌋, as another template of the assignment has it: 255 is not for c = 1 alone.
     #[serde(rename = "255.9")]
+    #[value(name = "255.9")]
     Overscale,
 }
 
@@ -81,7 +85,7 @@ impl Secondary {
 }
 
 /// The specular term.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum Specular {
     /// (R·V)ⁿ with R = 2(N·L)N − L.
@@ -90,13 +94,41 @@ pub enum Specular {
     Blinn,
 }
 
+/// Rendering rules that go together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum Convention {
+    /// What the assignment's official pictures pin.
+    Classic,
+    /// What the physics says.
+    Exact,
+}
+
+impl Convention {
+    /// Its settings; depth, samples and view are those of the command line without options.
+    pub fn settings(self) -> Settings {
+        match self {
+            Self::Classic => Settings::classic(),
+            Self::Exact => Settings::exact(),
+        }
+    }
+}
+
+impl FromStr for Convention {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        <Self as ValueEnum>::from_str(name, false).map_err(|_| format!("no convention is called '{name}'"))
+    }
+}
+
 /// Everything besides the scene that a picture depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Settings {
     /// Where the eye is and where it looks.
     pub view: View,
     /// Sample position within the pixel.
-    pub sampling: Sampling,
+    pub sampling: SampleOffset,
     /// Rounding of the 8-bit value.
     pub quantize: Quantize,
     /// Least distances of shadow and reflection rays.
@@ -105,23 +137,23 @@ pub struct Settings {
     pub specular: Specular,
     /// Greatest number of reflection bounces, 0 to [`Settings::MAX_DEPTH`].
     pub max_depth: u32,
-    /// Side k of the regular grid of k × k samples in each pixel, 1 to [`Settings::MAX_SAMPLES`]; the pixel is their mean.
-    pub samples: u32,
+    /// Side k of the regular grid of k × k samples in each pixel, 1 to [`Settings::MAX_SAMPLES_PER_SIDE`]; the pixel is their mean.
+    pub samples_per_side: u32,
 }
 
 impl Settings {
     /// The greatest accepted `max_depth`; beyond some tens of bounces nothing is left of a ray's weight or accuracy.
     pub const MAX_DEPTH: u32 = 1000;
-    /// The greatest accepted `samples`: 256 samples a pixel.
-    pub const MAX_SAMPLES: u32 = 16;
+    /// The greatest accepted `samples_per_side`: 256 samples a pixel.
+    pub const MAX_SAMPLES_PER_SIDE: u32 = 16;
 
     /// The side of the grid of `count` samples.
     ///
     /// # Errors
     ///
     /// Where `count` is no square number of a grid that is accepted.
-    pub fn samples_side(count: u32) -> Result<u32, String> {
-        let greatest = Self::MAX_SAMPLES * Self::MAX_SAMPLES;
+    pub fn samples_per_side_of(count: u32) -> Result<u32, String> {
+        let greatest = Self::MAX_SAMPLES_PER_SIDE.pow(2);
         let side = count.isqrt();
         if (1..=greatest).contains(&count) && side * side == count {
             Ok(side)
@@ -134,18 +166,36 @@ impl Settings {
     pub fn classic() -> Self {
         Self {
             view: View::FILE,
-            sampling: Sampling::Corner,
+            sampling: SampleOffset::Corner,
             quantize: Quantize::Truncate,
             secondary: Secondary::CLASSIC,
             specular: Specular::Phong,
             max_depth: 3,
-            samples: 1,
+            samples_per_side: 1,
         }
+    }
+
+    /// These settings by the rules of `convention`; depth, samples and view stay.
+    #[must_use]
+    pub fn with_convention(&self, convention: &Self) -> Self {
+        let Self { view, max_depth, samples_per_side, .. } = *self;
+        Self { view, max_depth, samples_per_side, ..*convention }
+    }
+
+    /// The convention whose rules these are, if there is one.
+    pub fn convention(&self) -> Option<Convention> {
+        let is_of = |convention: &&Convention| self.with_convention(&convention.settings()) == *self;
+        Convention::value_variants().iter().find(is_of).copied()
     }
 
     /// The convention that the physics asks for.
     pub fn exact() -> Self {
-        Self { sampling: Sampling::Center, quantize: Quantize::Round, secondary: Secondary::EXACT, ..Self::classic() }
+        Self {
+            sampling: SampleOffset::Center,
+            quantize: Quantize::Round,
+            secondary: Secondary::EXACT,
+            ..Self::classic()
+        }
     }
 }
 

@@ -6,23 +6,22 @@ use serde::Serialize;
 
 use super::families::{Axis, Family};
 use super::fit::growth_exponent;
-use super::stages::{STAGES, Stage};
+use super::phases::{PHASES, Phase};
 use crate::effects::Effects;
 use crate::engine::{Backend, Engine, Options, Rays};
 use crate::gpu::{self, DeviceInfo, Gpu};
 use crate::precision::{Selection, Tier};
-use crate::report::Sample;
 use crate::report::number::time;
+use crate::report::{Skipped, Timings};
 use crate::scene::Scene;
 use crate::settings::Settings;
-use crate::study::Skipped;
 
 /// By how much a forecast has to exceed the budget before a scene is not even tried.
 const DOUBT: f64 = 2.0;
 
 /// What to measure.
 #[derive(Debug, Clone)]
-pub struct Plan {
+pub struct BenchPlan {
     /// The families.
     pub families: Vec<&'static Family>,
     /// Scenes with more spheres are left out.
@@ -35,7 +34,7 @@ pub struct Plan {
     pub cpu: bool,
 }
 
-impl Plan {
+impl BenchPlan {
     /// Sizes of a family's scenes.
     pub(crate) fn sizes(&self, family: &Family) -> impl Iterator<Item = usize> {
         family.sizes.iter().copied().filter(|&size| family.spheres(size) <= self.max_spheres)
@@ -44,7 +43,7 @@ impl Plan {
 
 /// What renders, and how.
 #[derive(Clone, Copy)]
-pub struct Subject<'a> {
+pub struct RenderSetup<'a> {
     /// The device; `None` leaves the CPU reference.
     pub gpu: Option<&'a Gpu>,
     /// Conventions, depth and samples.
@@ -151,44 +150,44 @@ pub struct Measured {
     pub renderer: Renderer,
     /// From the scene to rows of pixels in memory by the wall clock, in ms, without compiling: what each further picture of
     /// the kind takes.
-    pub picture: Sample,
+    pub picture: Timings,
     /// Where the time went, in ms.
-    pub stages: Vec<Stage>,
+    pub phases: Vec<Phase>,
     /// The rays of one picture.
     pub rays: Rays,
-    /// All rays over the median of the stage `render`.
+    /// All rays over the median of the phase `render`.
     pub rays_per_second: f64,
 }
 
 /// Measures everything that `plan` asks for; `scene_done` hears of every scene.
 pub fn bench(
-    subject: &Subject,
-    plan: &Plan,
+    setup: &RenderSetup,
+    plan: &BenchPlan,
     mut scene_done: impl FnMut(&Family, &SceneResult),
 ) -> Result<Bench, gpu::Error> {
-    watched(subject, plan, |_, family, scene| scene_done(family, scene))
+    watched(setup, plan, |_, family, scene| scene_done(family, scene))
 }
 
 /// Likewise; `scene_done` also hears of all that was measured so far.
 pub fn watched(
-    subject: &Subject,
-    plan: &Plan,
+    setup: &RenderSetup,
+    plan: &BenchPlan,
     mut scene_done: impl FnMut(&Bench, &Family, &SceneResult),
 ) -> Result<Bench, gpu::Error> {
     let mut bench = Bench {
-        device: subject.gpu.map(|gpu| gpu.device.info.clone()),
+        device: setup.gpu.map(|gpu| gpu.device.info.clone()),
         cpu_threads: rayon::current_num_threads(),
-        settings: *subject.settings,
+        settings: *setup.settings,
         runs: plan.runs,
         seconds: plan.seconds,
         families: Vec::new(),
     };
     for family in &plan.families {
-        let mut forecasts: Vec<_> = renderers(subject, plan).into_iter().map(Forecast::new).collect();
+        let mut forecasts: Vec<_> = renderers(setup, plan).into_iter().map(Forecast::new).collect();
         let Family { name, summary, axis, .. } = **family;
         let mut result = FamilyResult { name, summary, axis, scenes: Vec::new(), growth: Vec::new() };
         for size in plan.sizes(family) {
-            let scene = measure_scene(subject, plan, family, size, &mut forecasts)?;
+            let scene = measure_scene(setup, plan, family, size, &mut forecasts)?;
             result.scenes.push(scene.clone());
             result.growth = forecasts.iter().filter_map(|forecast| growth(forecast.renderer, &result.scenes)).collect();
             bench.families.retain(|other| other.name != name);
@@ -202,9 +201,9 @@ pub fn watched(
     Ok(bench)
 }
 
-fn renderers(subject: &Subject, plan: &Plan) -> Vec<Renderer> {
+fn renderers(setup: &RenderSetup, plan: &BenchPlan) -> Vec<Renderer> {
     let mut renderers = Vec::new();
-    renderers.extend(subject.gpu.map(|_| Renderer::Device));
+    renderers.extend(setup.gpu.map(|_| Renderer::Device));
     if plan.cpu || renderers.is_empty() {
         renderers.push(Renderer::Cpu);
     }
@@ -249,11 +248,11 @@ struct Contestant<'a> {
 }
 
 impl Contestant<'_> {
-    /// Renders the picture from the scene on; returns its time in ms without compiling, and the engine with the stages.
-    fn run(&mut self, scene: &Scene, subject: &Subject, effects: &Effects, count: bool) -> Result<f64, gpu::Error> {
+    /// Renders the picture from the scene on; returns its time in ms without compiling, and the engine with the phases.
+    fn run(&mut self, scene: &Scene, setup: &RenderSetup, effects: &Effects, count: bool) -> Result<f64, gpu::Error> {
         let start = Instant::now();
         let options = Options { count_rays: count, ..Options::default() };
-        let mut engine: Engine = Engine::with(self.backend, scene, subject.settings, effects, &options)?;
+        let mut engine: Engine = Engine::with(self.backend, scene, setup.settings, effects, &options)?;
         engine.rows(0, &mut self.rgb)?;
         let wall_ms = start.elapsed().as_secs_f64() * 1e3;
         let times = engine.times();
@@ -261,8 +260,8 @@ impl Contestant<'_> {
             self.measured.rays = rays;
         }
         if !count {
-            for (stage, (_, read)) in self.measured.stages.iter_mut().zip(STAGES) {
-                stage.times.push(read(&times));
+            for (phase, (_, read)) in self.measured.phases.iter_mut().zip(PHASES) {
+                phase.times.push(read(&times));
             }
             self.measured.picture.push(wall_ms - times.compile_ms);
         }
@@ -271,24 +270,24 @@ impl Contestant<'_> {
 
     /// Forgets the warm-up.
     fn reset(&mut self) {
-        self.measured.picture = Sample::default();
-        self.measured.stages = Stage::all();
+        self.measured.picture = Timings::default();
+        self.measured.phases = Phase::all();
     }
 }
 
 fn measure_scene(
-    subject: &Subject,
-    plan: &Plan,
+    setup: &RenderSetup,
+    plan: &BenchPlan,
     family: &Family,
     size: usize,
     forecasts: &mut [Forecast],
 ) -> Result<SceneResult, gpu::Error> {
     let mut scene = family.scene(size);
-    if let Some((width, height)) = subject.resolution {
+    if let Some((width, height)) = setup.resolution {
         (scene.width, scene.height) = (width, height);
     }
-    let effects = (subject.effects)(&scene);
-    let tier = (subject.selection)(&scene, &effects).tier;
+    let effects = (setup.effects)(&scene);
+    let tier = (setup.selection)(&scene, &effects).tier;
     let mut skipped = Vec::new();
     let mut contestants = Vec::new();
     for forecast in forecasts {
@@ -299,14 +298,14 @@ fn measure_scene(
             skip(format!("{runs} runs would take about {}, the budget is {budget} s", time(ms * runs as f64)));
             continue;
         }
-        let backend = match (forecast.renderer, subject.gpu) {
+        let backend = match (forecast.renderer, setup.gpu) {
             (Renderer::Device, Some(gpu)) => Backend::Device(gpu, tier),
             _ => Backend::Reference,
         };
         let measured = Measured {
             renderer: forecast.renderer,
-            picture: Sample::default(),
-            stages: Stage::all(),
+            picture: Timings::default(),
+            phases: Phase::all(),
             rays: Rays::default(),
             rays_per_second: 0.0,
         };
@@ -314,10 +313,10 @@ fn measure_scene(
         let mut contestant = Contestant { backend, measured, rgb };
         // Rays are counted in a run of its own where that takes another kernel; then the kernel that is timed is compiled.
         let counted = match forecast.renderer {
-            Renderer::Device => contestant.run(&scene, subject, &effects, true).map(|_| ()),
+            Renderer::Device => contestant.run(&scene, setup, &effects, true).map(|_| ()),
             Renderer::Cpu => Ok(()),
         };
-        let warm_up = counted.and_then(|()| contestant.run(&scene, subject, &effects, false));
+        let warm_up = counted.and_then(|()| contestant.run(&scene, setup, &effects, false));
         let ms = match warm_up {
             Ok(ms) => ms,
             Err(refusal) if refusal.is_refusal() => {
@@ -336,7 +335,7 @@ fn measure_scene(
     }
     for _ in 0..plan.runs {
         for contestant in &mut contestants {
-            contestant.run(&scene, subject, &effects, false)?;
+            contestant.run(&scene, setup, &effects, false)?;
         }
     }
     let differing = match &contestants[..] {
@@ -350,7 +349,7 @@ fn measure_scene(
         lights: scene.lights.len(),
         width: scene.width,
         height: scene.height,
-        tier: subject.gpu.map(|_| tier),
+        tier: setup.gpu.map(|_| tier),
         measured,
         skipped,
         differing,
@@ -359,7 +358,7 @@ fn measure_scene(
 
 fn finished(mut measured: Measured) -> Measured {
     let Rays { primary, shadow, reflection } = measured.rays;
-    let render_ms = measured.stages.iter().find(|stage| stage.name == "render").map_or(f64::NAN, |s| s.times.median());
+    let render_ms = measured.phases.iter().find(|phase| phase.name == "render").map_or(f64::NAN, |s| s.times.median());
     measured.rays_per_second = (primary + shadow + reflection) as f64 / (render_ms / 1e3);
     measured
 }

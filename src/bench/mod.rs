@@ -3,16 +3,18 @@
 mod families;
 mod fit;
 mod measure;
+mod phases;
 mod plots;
 mod report;
-mod stages;
 mod table;
 mod tune;
 
 pub use families::{Axis, FAMILIES, Family};
 pub use fit::growth_exponent;
-pub use measure::{Bench, FamilyResult, Growth, Measured, Plan, Renderer, SceneResult, Subject, bench, watched};
+pub use measure::{
+    Bench, BenchPlan, FamilyResult, Growth, Measured, RenderSetup, Renderer, SceneResult, bench, watched,
+};
+pub use phases::{PHASES, Phase};
 pub use report::html;
-pub use stages::{STAGES, Stage};
 pub use table::{csv, csv_columns, heads};
 pub use tune::{KnobResult, Trial, TunePlan, TuneResult, tune};

@@ -3,8 +3,8 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::measure::{Bench, FamilyResult, Measured, SceneResult};
+use super::phases::PHASES;
 use super::plots;
-use super::stages::STAGES;
 use crate::engine::Rays;
 use crate::report::STYLE;
 use crate::report::number::{short, time};
@@ -42,7 +42,7 @@ fn facts(bench: &Bench) -> Markup {
             dt { "CPU" }
             dd { "the reference in " code { "f64" } ", " (bench.cpu_threads) " threads" }
             dt { "Picture" }
-            dd { "greatest depth " (bench.settings.max_depth) ", " (count(bench.settings.samples.pow(2), "sample")) " a pixel" }
+            dd { "greatest depth " (bench.settings.max_depth) ", " (count(bench.settings.samples_per_side.pow(2), "sample")) " a pixel" }
             dt { "Runs" }
             dd { (bench.runs) " of each scene and renderer, at most " (time(bench.seconds * 1e3)) " together" }
         }
@@ -68,7 +68,7 @@ fn section(family: &FamilyResult) -> Markup {
 }
 
 fn table(family: &FamilyResult) -> Markup {
-    let columns = STAGES.len() + 7;
+    let columns = PHASES.len() + 7;
     html! {
         div.wide {
             table {
@@ -78,7 +78,7 @@ fn table(family: &FamilyResult) -> Markup {
                         th { "renderer" }
                         th { "picture" br; "median" }
                         th { "min … max" br; "ms" }
-                        @for (name, _) in STAGES { th { (name) br; "ms" } }
+                        @for (name, _) in PHASES { th { (name) br; "ms" } }
                         th { "rays" }
                         th { "million" br; "rays/s" }
                         th { "pixels that" br; "differ" }
@@ -103,7 +103,7 @@ fn table(family: &FamilyResult) -> Markup {
 }
 
 fn row(scene: &SceneResult, measured: &Measured) -> Markup {
-    let Measured { renderer, picture, stages, rays, rays_per_second } = measured;
+    let Measured { renderer, picture, phases, rays, rays_per_second } = measured;
     let Rays { primary, shadow, reflection } = rays;
     let tier = scene.tier.filter(|_| *renderer == super::Renderer::Device);
     html! {
@@ -112,7 +112,7 @@ fn row(scene: &SceneResult, measured: &Measured) -> Markup {
             td class=(plots::class(*renderer)) { (renderer.name()) @if let Some(tier) = tier { ", " (tier) } }
             td { (time(picture.median())) }
             td { (short(picture.min())) " … " (short(picture.max())) }
-            @for stage in stages { td { (short(stage.times.median())) } }
+            @for phase in phases { td { (short(phase.times.median())) } }
             td { (primary + shadow + reflection) }
             td { (short(rays_per_second / 1e6)) }
             td { (scene.differing.map_or_else(|| "–".to_owned(), |count| count.to_string())) }
@@ -142,7 +142,7 @@ fn method(bench: &Bench) -> Markup {
             }
             li {
                 "Growth is the least-squares slope of log time over log size. Rays per second are all rays over the median of \
-                 the stage " em { "render" } "; a device needs no eye rays where no sphere can be, the reference traces them all."
+                 the phase " em { "render" } "; a device needs no eye rays where no sphere can be, the reference traces them all."
             }
             li { "Outliers lie more than 1.5 interquartile ranges beyond the quartiles (Tukey's fences); a spread is wide where the fastest and the slowest run differ by more than half the median." }
         }

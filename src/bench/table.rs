@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 
 use super::families::Family;
 use super::measure::{Bench, Growth, Measured, SceneResult};
-use super::stages::STAGES;
+use super::phases::PHASES;
 use crate::engine::Rays;
-use crate::report::Sample;
+use crate::report::Timings;
 use crate::report::csv::record;
 use crate::report::number::{short, time};
 use crate::words::count;
@@ -17,12 +17,12 @@ impl SceneResult {
         let mut text = String::new();
         let name = family.file_stem(self.size);
         for measured in &self.measured {
-            let Measured { renderer, picture, stages, rays_per_second, .. } = measured;
+            let Measured { renderer, picture, phases, rays_per_second, .. } = measured;
             let range = format!("{} … {}", short(picture.min()), short(picture.max()));
-            let stages: String = stages.iter().map(|stage| format!(" {:>9}", short(stage.times.median()))).collect();
+            let phases: String = phases.iter().map(|phase| format!(" {:>9}", short(phase.times.median()))).collect();
             let _ = writeln!(
                 text,
-                "{name:<20} {:<7} {:>9} {range:>17}{stages} {:>9}  {}",
+                "{name:<20} {:<7} {:>9} {range:>17}{phases} {:>9}  {}",
                 renderer.name(),
                 short(picture.median()),
                 short(rays_per_second / 1e6),
@@ -41,8 +41,8 @@ impl SceneResult {
 
 /// The first lines of the terminal's table.
 pub fn heads() -> String {
-    let stages: String = STAGES.map(|(name, _)| format!(" {name:>9}")).concat();
-    format!("times in ms       {:>19} {:>17}{stages} {:>9}\n", "picture", "min … max", "Mrays/s")
+    let phases: String = PHASES.map(|(name, _)| format!(" {name:>9}")).concat();
+    format!("times in ms       {:>19} {:>17}{phases} {:>9}\n", "picture", "min … max", "Mrays/s")
 }
 
 impl Growth {
@@ -89,7 +89,7 @@ pub fn csv_columns() -> Vec<String> {
             .into();
     columns.extend(["runs", "picture_median_ms", "picture_min_ms", "picture_max_ms", "picture_outliers"]);
     let mut columns: Vec<_> = columns.into_iter().map(str::to_owned).collect();
-    for (name, _) in STAGES {
+    for (name, _) in PHASES {
         let name = name.replace(' ', "_");
         columns.extend(["median", "min", "max"].map(|what| format!("{name}_{what}_ms")));
     }
@@ -140,12 +140,12 @@ pub fn csv(bench: &Bench) -> String {
 }
 
 fn measured_fields(measured: &Measured, last: [String; 3]) -> Vec<String> {
-    let Measured { renderer, picture, stages, rays, rays_per_second } = measured;
-    let three = |sample: &Sample| [sample.median(), sample.min(), sample.max()].map(|ms| ms.to_string());
+    let Measured { renderer, picture, phases, rays, rays_per_second } = measured;
+    let three = |sample: &Timings| [sample.median(), sample.min(), sample.max()].map(|ms| ms.to_string());
     let mut fields = vec![renderer.name().to_owned(), picture.runs().len().to_string()];
     fields.extend(three(picture));
     fields.push(picture.outliers().to_string());
-    fields.extend(stages.iter().flat_map(|stage| three(&stage.times)));
+    fields.extend(phases.iter().flat_map(|phase| three(&phase.times)));
     let Rays { primary, shadow, reflection } = rays;
     fields.extend([primary, shadow, reflection].map(u64::to_string));
     fields.push(rays_per_second.to_string());

@@ -9,7 +9,7 @@ use crate::effects::Effects;
 use crate::engine::{Backend, Engine, render_picture};
 use crate::gpu::{DeviceInfo, Error, Gpu};
 use crate::precision::Tier;
-use crate::report::Sample;
+use crate::report::Timings;
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::tuning::{KNOBS, Knob, Tuning};
@@ -52,7 +52,7 @@ pub struct Trial {
     /// The value.
     pub value: f64,
     /// Times of a whole picture of each scene, in ms, compilation not counted.
-    pub times: Vec<Sample>,
+    pub times: Vec<Timings>,
     /// Its medians over those of the value that was there before, the geometric mean of all scenes.
     pub ratio: f64,
 }
@@ -86,7 +86,7 @@ pub struct TuneResult {
 }
 
 /// A scene ready to be rendered again and again, and its picture.
-struct Subject {
+struct Workload {
     scene: Scene,
     effects: Effects,
     tier: Tier,
@@ -114,17 +114,17 @@ fn tune_knob(gpu: &mut Gpu, plan: &TunePlan, knob: &Knob, best: &Tuning) -> Resu
         let family = Family::named(name).filter(|family| family.spheres(size) <= plan.max_spheres)?;
         Some((format!("{name} {size}"), family.scene(size)))
     });
-    let (scenes, mut subjects): (Vec<_>, Vec<_>) = chosen
+    let (scenes, mut workloads): (Vec<_>, Vec<_>) = chosen
         .map(|(name, mut scene)| {
             if let Some((width, height)) = plan.resolution {
                 (scene.width, scene.height) = (width, height);
             }
             let (effects, tier) = (plan.choice)(gpu, &scene);
-            (name, Subject { scene, effects, tier, picture: None })
+            (name, Workload { scene, effects, tier, picture: None })
         })
         .unzip();
     let mut result = KnobResult { name: knob.name, scenes, before, kept: before, trials: Vec::new() };
-    if subjects.is_empty() {
+    if workloads.is_empty() {
         return Ok(result);
     }
     let mut values: Vec<f64> = knob.candidates.iter().copied().filter(|value| fits(gpu, knob, *value)).collect();
@@ -133,9 +133,9 @@ fn tune_knob(gpu: &mut Gpu, plan: &TunePlan, knob: &Knob, best: &Tuning) -> Resu
     }
     let mut trials: Vec<_> = values
         .into_iter()
-        .map(|value| Trial { value, times: vec![Sample::default(); subjects.len()], ratio: f64::NAN })
+        .map(|value| Trial { value, times: vec![Timings::default(); workloads.len()], ratio: f64::NAN })
         .collect();
-    for (index, subject) in subjects.iter_mut().enumerate() {
+    for (index, workload) in workloads.iter_mut().enumerate() {
         for run in 0..=plan.runs {
             for place in 0..trials.len() {
                 // There and back, so that no candidate always follows the same one.
@@ -144,7 +144,7 @@ fn tune_knob(gpu: &mut Gpu, plan: &TunePlan, knob: &Knob, best: &Tuning) -> Resu
                 let mut tuning = *best;
                 (knob.set)(&mut tuning, trial.value);
                 gpu.set_tuning(tuning)?;
-                let ms = subject.render(gpu, plan.settings, &tuning)?;
+                let ms = workload.render(gpu, plan.settings, &tuning)?;
                 // The first is a warm-up.
                 if run > 0 {
                     trial.times[index].push(ms);
@@ -155,7 +155,7 @@ fn tune_knob(gpu: &mut Gpu, plan: &TunePlan, knob: &Knob, best: &Tuning) -> Resu
     let medians = |trial: &Trial| trial.times.iter().map(|times| times.median().ln()).sum::<f64>();
     let reference = trials.iter().find(|trial| trial.value == before).map_or(f64::NAN, medians);
     for trial in &mut trials {
-        trial.ratio = ((medians(trial) - reference) / subjects.len() as f64).exp();
+        trial.ratio = ((medians(trial) - reference) / workloads.len() as f64).exp();
     }
     let reference = trials.iter().find(|trial| trial.value == before);
     let faster = trials.iter().filter(|trial| reference.is_some_and(|reference| trial.is_faster(reference)));
@@ -173,7 +173,7 @@ fn fits(gpu: &Gpu, knob: &Knob, value: f64) -> bool {
     gpu.device.info.problem_with(&tuning).is_none()
 }
 
-impl Subject {
+impl Workload {
     /// Renders once and returns the time, in ms. Another picture than before is an error: no tuning may change one.
     fn render(&mut self, gpu: &Gpu, settings: &Settings, tuning: &Tuning) -> Result<f64, Error> {
         let mut engine = Engine::new(Backend::Device(gpu, self.tier), &self.scene, settings, &self.effects)?;
@@ -196,10 +196,10 @@ impl Trial {
     /// Whether this is faster in its medians, in its least times, and in four of five runs: on a busy machine any one of
     /// these says little.
     fn is_faster(&self, other: &Self) -> bool {
-        let sum = |trial: &Self, time: &dyn Fn(&Sample) -> f64| trial.times.iter().map(|t| time(t).ln()).sum::<f64>();
+        let sum = |trial: &Self, time: &dyn Fn(&Timings) -> f64| trial.times.iter().map(|t| time(t).ln()).sum::<f64>();
         let runs = self.times.iter().map(|times| times.runs().len()).min().unwrap_or(0);
         let wins = |run: &usize| sum(self, &|times| times.runs()[*run]) < sum(other, &|times| times.runs()[*run]);
-        let least = (sum(self, &Sample::min) - sum(other, &Sample::min)) / self.times.len() as f64;
+        let least = (sum(self, &Timings::min) - sum(other, &Timings::min)) / self.times.len() as f64;
         self.ratio < WORTHWHILE && least.exp() < WORTHWHILE && 5 * (0..runs).filter(wins).count() >= 4 * runs
     }
 }

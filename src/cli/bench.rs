@@ -4,14 +4,15 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::failure::{Failure, OK, OUTPUT};
-use super::files::{command, save, save_json, seconds};
+use super::files::{command, save, seconds};
 use super::guard::Guard;
 use super::options::{DeviceOptions, PictureOptions};
 use super::output::{errln, out};
 use super::progress::{Progress, Style};
+use super::reports::Reports;
 use super::signals::{say_last, say_nothing};
 use super::tune::run_tune;
-use crate::bench::{Bench, FAMILIES, Family, Plan, Subject, csv, heads, html, watched};
+use crate::bench::{Bench, BenchPlan, FAMILIES, Family, RenderSetup, csv, heads, html, watched};
 
 /// Arguments of `trueray bench`.
 #[derive(Debug, clap::Args)]
@@ -40,15 +41,8 @@ pub(super) struct Args {
     /// Write the scenes as scene files into a folder, for other renderers, and end
     #[arg(long, value_name = "FOLDER")]
     write: Option<PathBuf>,
-    /// Write a report with plots, one HTML file that needs nothing else
-    #[arg(long, value_name = "FILE")]
-    report: Option<PathBuf>,
-    /// Write every scene and run as CSV; `-` is standard output
-    #[arg(long, value_name = "FILE")]
-    csv: Option<PathBuf>,
-    /// Write everything as JSON; `-` is standard output
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    reports: Reports,
     /// How progress is shown on standard error
     #[arg(long, value_enum, default_value_t = Style::Auto)]
     progress: Style,
@@ -68,9 +62,8 @@ pub(super) fn run(args: &Args) -> u8 {
 fn run_bench(args: &Args) -> Result<(), Failure> {
     let families = if args.families.is_empty() { FAMILIES.iter().collect() } else { args.families.clone() };
     if args.tune {
-        let json = args.json.as_deref();
-        Guard::default().options([("--json", &args.json)])?;
-        return run_tune(&args.picture, &args.device, args.max_spheres, args.runs as usize, json);
+        args.reports.check(&mut Guard::default())?;
+        return run_tune(&args.picture, &args.device, args.max_spheres, args.runs as usize, args.reports.json());
     }
     if args.list {
         list(&families);
@@ -79,84 +72,62 @@ fn run_bench(args: &Args) -> Result<(), Failure> {
     if let Some(folder) = &args.write {
         return write_scenes(args, &families, folder);
     }
-    Guard::default().options([("--report", &args.report), ("--csv", &args.csv), ("--json", &args.json)])?;
+    args.reports.check(&mut Guard::default())?;
     let gpu = args.device.open()?;
     let settings = args.picture.settings()?;
-    let subject = Subject {
+    let setup = RenderSetup {
         gpu: gpu.as_ref(),
         settings: &settings,
         resolution: args.picture.resolution(),
         effects: &|scene| args.picture.effects(scene, &settings),
         selection: &|scene, effects| args.device.selection(gpu.as_ref(), scene, &settings, effects),
     };
-    let plan = Plan {
+    let plan = BenchPlan {
         families,
         max_spheres: args.max_spheres,
         runs: args.runs as usize,
         seconds: args.seconds,
         cpu: !args.no_cpu,
     };
-    let table_on_stdout = ![&args.csv, &args.json].into_iter().flatten().any(|path| path == Path::new("-"));
-    let show = |text: &str| {
-        if table_on_stdout {
-            out!("{text}");
-        }
-    };
-    show(&heads());
-    let files = Files { report: args.report.clone(), csv: args.csv.clone(), json: args.json.clone() };
+    args.reports.show(&heads());
     let measured: Arc<Mutex<Option<Bench>>> = Arc::default();
-    let (last, last_files) = (Arc::clone(&measured), files.clone());
-    say_last(move || interrupted(lock(&last).as_ref(), &last_files));
+    let (last, reports) = (Arc::clone(&measured), args.reports.clone());
+    say_last(move || interrupted(lock(&last).as_ref(), &reports));
     let scenes = plan.families.iter().map(|family| plan.sizes(family).count()).sum::<usize>();
     let mut done = 0;
     let mut progress = Progress::new(args.progress, "bench");
-    let bench = watched(&subject, &plan, |bench, family, scene| {
+    let bench = watched(&setup, &plan, |bench, family, scene| {
         *lock(&measured) = Some(bench.clone());
         done += 1;
-        progress.pause(|| show(&scene.report(family)));
+        progress.pause(|| args.reports.show(&scene.report(family)));
         progress.set(done as f64 / scenes as f64);
     })?;
     progress.finish();
     say_nothing();
-    show(&format!("\n{}\n{}\n", bench.growth_report(), bench.head()));
-    files.write(&bench)
+    args.reports.show(&format!("\n{}\n{}\n", bench.growth_report(), bench.head()));
+    write(&args.reports, &bench)
 }
 
 fn lock(measured: &Mutex<Option<Bench>>) -> MutexGuard<'_, Option<Bench>> {
     measured.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Where the measurements go.
-#[derive(Debug, Clone)]
-struct Files {
-    report: Option<PathBuf>,
-    csv: Option<PathBuf>,
-    json: Option<PathBuf>,
-}
-
-impl Files {
-    fn write(&self, bench: &Bench) -> Result<(), Failure> {
-        if let Some(path) = &self.report {
-            save(path, &html(bench, &command()))?;
-        }
-        if let Some(path) = &self.csv {
-            save(path, &csv(bench))?;
-        }
-        if let Some(path) = &self.json {
-            save_json(path, &serde_json::json!({ "command": command(), "bench": bench }))?;
-        }
-        Ok(())
-    }
+fn write(reports: &Reports, bench: &Bench) -> Result<(), Failure> {
+    reports.write(
+        || html(bench, &command()),
+        || csv(bench),
+        || serde_json::json!({ "command": command(), "bench": bench }),
+    )
 }
 
 /// Writes the scenes that are measured.
-fn interrupted(measured: Option<&Bench>, files: &Files) {
+fn interrupted(measured: Option<&Bench>, reports: &Reports) {
     let Some(bench) = measured else {
         errln!("trueray: interrupted before anything was measured");
         return;
     };
     errln!("trueray: interrupted; the scenes that were measured are written");
-    if let Err(failure) = files.write(bench) {
+    if let Err(failure) = write(reports, bench) {
         failure.report();
     }
 }

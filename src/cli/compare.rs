@@ -8,14 +8,14 @@ use super::failure::{DIFFERENT, Failure, OK, USAGE};
 use super::guard::Guard;
 use super::input::Input;
 use super::named::format_by_ending;
-use super::options::{DeviceOptions, PictureOptions, device_name, open_device};
+use super::options::{DeviceOptions, PictureOptions, open_device};
 use super::output::{errln, out, outln};
 use crate::compare::{
     Band, Difference, Explanation, Limits, SCALE, SizeMismatch, Verdict, heatmap, three_wide, verdict,
 };
 use crate::cpu::{Judge, Reference};
 use crate::effects::Effects;
-use crate::engine::{Backend, Engine, render_picture};
+use crate::engine::{Backend, Engine, device_name, render_picture};
 use crate::film::{Encoded, Leniency, Picture, ReadError, Target};
 use crate::gpu::Choice;
 use crate::scene::Scene;
@@ -128,7 +128,7 @@ struct HeatBand {
 }
 
 /// Two pictures to compare, with what the scene says of them.
-struct Subject {
+struct Pair {
     names: [String; 2],
     pictures: [Picture; 2],
     remarks: Remarks,
@@ -154,7 +154,7 @@ fn compare(args: &Args) -> Result<u8, Failure> {
     let written = [("--heatmap", &args.heatmap), ("--three-wide", &args.three_wide)];
     Guard::new(args.pictures.iter().chain(&args.scene)).options(written)?;
     written.iter().filter_map(|(_, path)| path.as_deref()).try_for_each(|path| format_by_ending(path).map(|_| ()))?;
-    let Subject { names: [a, b], pictures: [picture_a, picture_b], remarks, explanation, not_finite } =
+    let Pair { names: [a, b], pictures: [picture_a, picture_b], remarks, explanation, not_finite } =
         match (&args.scene, args.pictures.as_slice()) {
             (None, [a, b]) => two_pictures(args, a, b)?,
             (Some(scene), pictures @ ([] | [_])) => with_scene(args, scene, pictures.first().map(PathBuf::as_path))?,
@@ -208,7 +208,7 @@ fn compare(args: &Args) -> Result<u8, Failure> {
 }
 
 /// The picture given, or the device's, against the scene's reference.
-fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Subject, Failure> {
+fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Pair, Failure> {
     let input = Input::read(scene)?;
     if args.json && input.parsed.scene.is_none() {
         return Err(Failure::new(USAGE, input.parsed.report(false).trim_end()));
@@ -251,7 +251,7 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Subje
     let reference = Reference::new(scene, &settings, &effects);
     let explanation = Explanation::of(&picture, &expected, &reference, &judge);
     let names = [name, format!("reference of {}", loaded.name)];
-    Ok(Subject { names, pictures: [picture, expected], remarks, explanation: Some(explanation), not_finite })
+    Ok(Pair { names, pictures: [picture, expected], remarks, explanation: Some(explanation), not_finite })
 }
 
 /// The judge of a picture of unknown origin: as if it came from the device that is asked for or, for auto, from the one that would render
@@ -303,7 +303,7 @@ impl From<ReadError> for Failure {
 }
 
 /// Both pictures; nothing is decoded before their sizes are known to agree.
-fn two_pictures(args: &Args, a: &Path, b: &Path) -> Result<Subject, Failure> {
+fn two_pictures(args: &Args, a: &Path, b: &Path) -> Result<Pair, Failure> {
     if [a, b] == [Path::new("-"); 2] {
         return Err(Failure::new(USAGE, "only one of the pictures can be standard input"));
     }
@@ -312,7 +312,7 @@ fn two_pictures(args: &Args, a: &Path, b: &Path) -> Result<Subject, Failure> {
     let mut remarks = Remarks::default();
     let a = decode(args, &name_a, a, "A", &mut remarks)?;
     let b = decode(args, &name_b, b, "B", &mut remarks)?;
-    Ok(Subject { names: [name_a, name_b], pictures: [a, b], remarks, explanation: None, not_finite: None })
+    Ok(Pair { names: [name_a, name_b], pictures: [a, b], remarks, explanation: None, not_finite: None })
 }
 
 /// A picture file, or standard input for `-`, and its name.

@@ -16,6 +16,7 @@ mod options;
 mod output;
 mod progress;
 mod render;
+mod reports;
 mod sampling;
 mod shader;
 mod signals;

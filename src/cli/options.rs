@@ -2,18 +2,18 @@
 
 use super::failure::{Failure, SCENE, USAGE};
 use super::output::errln;
-use clap::{Args, ValueEnum};
+use clap::Args;
 use glam::DVec3;
 
 use crate::effects::{Effects, Request};
 use crate::gpu::{Choice, Error, Gpu};
 use crate::limits;
 use crate::precision::{self, Selection, Tier};
-use crate::scene::Scene;
-use crate::settings::{Quantize, Sampling, Secondary, Settings, Specular};
+use crate::scene::{Scene, resolution};
+use crate::settings::{Convention, Quantize, SampleOffset, Secondary, Settings, Specular};
 use crate::view::View;
 #[cfg(feature = "view")]
-use crate::viewer::{Pose, Range, Wishes};
+use crate::viewer::{FlightScale, Pose, ViewState};
 
 /// What decides the picture besides the scene.
 #[derive(Debug, Args)]
@@ -23,22 +23,22 @@ pub(super) struct PictureOptions {
     convention: Convention,
     /// Where in its pixel the sample lies
     #[arg(long, value_enum)]
-    sampling: Option<SamplingArg>,
+    sampling: Option<SampleOffset>,
     /// How a colour becomes an 8-bit level
     #[arg(long, value_enum)]
-    quantize: Option<QuantizeArg>,
+    quantize: Option<Quantize>,
     /// Least distance of shadow and reflection hits: 0 in the exact convention, there also called `skip-self`
     #[arg(long, value_name = "T", value_parser = secondary)]
     secondary_epsilon: Option<Secondary>,
     /// Specular term
     #[arg(long, value_enum)]
-    specular: Option<SpecularArg>,
+    specular: Option<Specular>,
     /// Greatest number of bounces, reflected or refracted
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(0..=i64::from(Settings::MAX_DEPTH)))]
     max_depth: u32,
     /// Samples of each pixel, on a regular grid: a square number up to 256
-    #[arg(long, value_name = "N", default_value = "1", value_parser = samples_side)]
-    spp: u32,
+    #[arg(long = "spp", value_name = "N", default_value = "1", value_parser = samples_per_side)]
+    samples_per_side: u32,
     /// Picture size in place of the scene's RES
     #[arg(long, value_name = "WxH", value_parser = resolution)]
     res: Option<(u32, u32)>,
@@ -66,35 +66,21 @@ struct CameraOptions {
 impl PictureOptions {
     /// Fails where the camera options define no view.
     pub(super) fn settings(&self) -> Result<Settings, Failure> {
-        let mut settings = match self.convention {
-            Convention::Classic => Settings::classic(),
-            Convention::Exact => Settings::exact(),
-        };
+        let mut settings = self.convention.settings();
         if let Some(sampling) = self.sampling {
-            settings.sampling = match sampling {
-                SamplingArg::Corner => Sampling::Corner,
-                SamplingArg::BottomLeft => Sampling::BottomLeft,
-                SamplingArg::Center => Sampling::Center,
-            };
+            settings.sampling = sampling;
         }
         if let Some(quantize) = self.quantize {
-            settings.quantize = match quantize {
-                QuantizeArg::Truncate => Quantize::Truncate,
-                QuantizeArg::Round => Quantize::Round,
-                QuantizeArg::Overscale => Quantize::Overscale,
-            };
+            settings.quantize = quantize;
         }
         if let Some(secondary) = self.secondary_epsilon {
             settings.secondary = secondary;
         }
         if let Some(specular) = self.specular {
-            settings.specular = match specular {
-                SpecularArg::Phong => Specular::Phong,
-                SpecularArg::Blinn => Specular::Blinn,
-            };
+            settings.specular = specular;
         }
         settings.max_depth = self.max_depth;
-        settings.samples = self.spp;
+        settings.samples_per_side = self.samples_per_side;
         let CameraOptions { eye, look_at, up } = self.camera;
         settings.view = View::new(eye, look_at, up).map_err(|error| Failure::new(USAGE, error.to_string()))?;
         Ok(settings)
@@ -102,12 +88,13 @@ impl PictureOptions {
 
     /// What a page of `trueray view` starts with.
     #[cfg(feature = "view")]
-    pub(super) fn wishes(&self, scene: &Scene, precision: precision::Request) -> Result<Wishes, Failure> {
+    pub(super) fn view_state(&self, scene: &Scene, precision: precision::Request) -> Result<ViewState, Failure> {
         let settings = self.settings()?;
         let CameraOptions { eye, look_at, up } = self.camera;
-        let pose = look_at.map_or_else(|| Pose::ahead(eye, up, Range::of(scene)), |look_at| Pose { eye, look_at, up });
+        let pose =
+            look_at.map_or_else(|| Pose::ahead(eye, up, FlightScale::of(scene)), |look_at| Pose { eye, look_at, up });
         let pose = (settings.view != View::FILE).then_some(pose);
-        Ok(Wishes { pose, settings, effects: self.effects.clone(), precision, res: self.res })
+        Ok(ViewState { pose, settings, effects: self.effects.clone(), precision, res: self.res })
     }
 
     pub(super) fn effects(&self, scene: &Scene, settings: &Settings) -> Effects {
@@ -215,41 +202,6 @@ impl DeviceOptions {
     }
 }
 
-/// How the device of a picture is called in messages.
-pub(super) fn device_name(gpu: Option<&Gpu>) -> String {
-    gpu.map_or_else(|| "the CPU reference (f64)".to_owned(), |gpu| gpu.device.info.to_string())
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum Convention {
-    Classic,
-    Exact,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum SamplingArg {
-    Corner,
-    BottomLeft,
-    Center,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum QuantizeArg {
-    /// ⌊255·c⌋
-    Truncate,
-    /// 255·c to nearest
-    Round,
-    /// ⌊255.9·c⌋
-    #[value(name = "255.9")]
-    Overscale,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum SpecularArg {
-    Phong,
-    Blinn,
-}
-
 fn secondary(text: &str) -> Result<Secondary, String> {
     if text == "skip-self" {
         return Ok(Secondary::EXACT);
@@ -261,8 +213,8 @@ fn secondary(text: &str) -> Result<Secondary, String> {
 }
 
 /// The side of the grid of so many samples.
-pub(super) fn samples_side(text: &str) -> Result<u32, String> {
-    Settings::samples_side(text.parse().unwrap_or(0))
+pub(super) fn samples_per_side(text: &str) -> Result<u32, String> {
+    Settings::samples_per_side_of(text.parse().unwrap_or(0))
 }
 
 /// Three coordinates.
@@ -272,11 +224,4 @@ fn vector(text: &str) -> Result<DVec3, String> {
         Some(&[x, y, z]) if [x, y, z].iter().all(|number| number.is_finite()) => Ok(DVec3::new(x, y, z)),
         _ => Err("expected three finite numbers X,Y,Z such as 0,1.5,-2".into()),
     }
-}
-
-fn resolution(text: &str) -> Result<(u32, u32), String> {
-    let side = |text: &str| text.parse().ok().filter(|side| (1..=crate::scene::MAX_RESOLUTION).contains(side));
-    text.split_once(['x', 'X', '×'])
-        .and_then(|(width, height)| Some((side(width)?, side(height)?)))
-        .ok_or_else(|| format!("expected WxH with sides from 1 to {}, such as 640x480", crate::scene::MAX_RESOLUTION))
 }

@@ -8,13 +8,13 @@ use super::files::{check_folder, json, save};
 use super::guard::Guard;
 use super::input::{Loaded, print_doubts};
 use super::named::{check_named, format_by_ending};
-use super::options::{DeviceOptions, PictureOptions, device_name};
+use super::options::{DeviceOptions, PictureOptions};
 use super::output::{err, errln};
 use super::progress::{Progress, Style};
 use super::sampling::{Choice, SamplingOptions};
 use super::stats::{Sampled, Stats, Verified, peak_memory_mib};
 use crate::effects::Effects;
-use crate::engine::{Backend, Engine, Options, Pixels, render_bands, render_partial};
+use crate::engine::{Backend, Engine, Options, Pixels, device_name, ms, render_bands, render_partial};
 use crate::film::{Format, PictureWriter, Target};
 use crate::gpu::{Ahead, DeviceKind, Gpu};
 use crate::precision::Selection;
@@ -196,7 +196,7 @@ fn render_one(
         err!("{}{}{sampling}", explanation(&loaded.name, &effects), precision_explanation(&selection));
         explain_device(gpu);
     }
-    let backend = gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, selection.tier));
+    let backend = Backend::of(gpu, selection.tier);
 
     let wants_stats = args.stats || args.stats_json.is_some();
     let options = Options { count_rays: wants_stats && !args.no_ray_counts, ..Options::default() };
@@ -359,10 +359,6 @@ pub(super) fn explanation(name: &str, effects: &Effects) -> String {
 pub(super) fn precision_explanation(selection: &Selection) -> String {
     let Selection { tier, reason, demand, .. } = selection;
     format!("  precision    {tier}: {reason}\n  demand       {}\n", demand.summary())
-}
-
-fn ms(duration: Duration) -> f64 {
-    duration.as_secs_f64() * 1e3
 }
 
 fn write_stats(path: &Path, stats: &[Stats]) -> Result<(), Failure> {

@@ -8,8 +8,8 @@ use crate::sampling::{Density, Fill, Fovea, Samples};
 pub(super) struct SamplingOptions {
     /// Sample all pixels around this place and ever fewer away from it: `center`, or X,Y from the top left in parts of the
     /// picture (0.5,0.5) or in pixels (320px,240px)
-    #[arg(long, value_name = "center|X,Y", value_parser = place, group = "partial")]
-    foveate: Option<Place>,
+    #[arg(long, value_name = "center|X,Y", value_parser = picture_point, group = "partial")]
+    foveate: Option<PicturePoint>,
     /// How far all pixels are sampled, in parts of the picture's shorter side
     #[arg(long, value_name = "R", default_value_t = 0.15, value_parser = radius, requires = "foveate", conflicts_with = "sparse")]
     fovea_radius: f64,
@@ -41,7 +41,7 @@ impl SamplingOptions {
         let density = match (&self.foveate, self.sparse) {
             (None, None) => return Ok(None),
             (None, Some(part)) => Density::sparse(part),
-            (Some(Place(coordinates)), _) => {
+            (Some(PicturePoint(coordinates)), _) => {
                 let center = [0, 1].map(|axis| coordinates[axis].in_pixels(sides[axis]));
                 let unit = sides[0].min(sides[1]);
                 let fovea = Fovea { center, radius: self.fovea_radius * unit, falloff: self.falloff * unit };
@@ -106,11 +106,11 @@ impl Coordinate {
 
 /// A place on the picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Place([Coordinate; 2]);
+struct PicturePoint([Coordinate; 2]);
 
-fn place(text: &str) -> Result<Place, String> {
+fn picture_point(text: &str) -> Result<PicturePoint, String> {
     if text == "center" {
-        return Ok(Place([Coordinate::Part(0.5); 2]));
+        return Ok(PicturePoint([Coordinate::Part(0.5); 2]));
     }
     let coordinate = |text: &str| {
         let text = text.trim();
@@ -119,7 +119,7 @@ fn place(text: &str) -> Result<Place, String> {
             None => text.parse().ok().filter(|x| (0.0..=1.0).contains(x)).map(Coordinate::Part),
         }
     };
-    text.split_once(',').and_then(|(x, y)| Some(Place([coordinate(x)?, coordinate(y)?]))).ok_or_else(|| {
+    text.split_once(',').and_then(|(x, y)| Some(PicturePoint([coordinate(x)?, coordinate(y)?]))).ok_or_else(|| {
         "expected center, or X,Y in parts of the picture from 0 to 1, or in pixels such as 320px,240px".into()
     })
 }

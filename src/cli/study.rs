@@ -1,18 +1,19 @@
 //! `trueray study`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::failure::{Failure, OK};
-use super::files::{command, save, save_json, seconds};
+use super::files::{command, seconds};
 use super::guard::Guard;
 use super::input::Loaded;
-use super::options::{DeviceOptions, PictureOptions, samples_side};
-use super::output::{errln, out};
+use super::options::{DeviceOptions, PictureOptions, samples_per_side};
+use super::output::errln;
 use super::progress::{Progress, Style};
+use super::reports::Reports;
 use super::signals::{say_last, say_nothing};
 use crate::settings::Settings;
-use crate::study::{Error, Event, HardCases, Plan, Skipped, Study, Subject, csv, html};
+use crate::study::{Error, Event, HardCases, Skipped, Study, StudyInput, StudyPlan, csv, html};
 
 /// Arguments of `trueray study`.
 #[derive(Debug, clap::Args)]
@@ -30,7 +31,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(0..=i64::from(Settings::MAX_DEPTH)))]
     depths: Vec<u32>,
     /// Samples per pixel to compare: square numbers
-    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "1,4,16", value_parser = samples_side)]
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "1,4,16", value_parser = samples_per_side)]
     spp_list: Vec<u32>,
     /// Rays of each hard case, on which the intersection kernels are compared once, if a Vulkan device is used; 0 leaves
     /// them out
@@ -39,15 +40,8 @@ pub(super) struct Args {
     /// Seed of the hard cases' random numbers
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
-    /// Write a report with plots, one HTML file that needs nothing else
-    #[arg(long, value_name = "FILE")]
-    report: Option<PathBuf>,
-    /// Write every point and run as CSV; `-` is standard output
-    #[arg(long, value_name = "FILE")]
-    csv: Option<PathBuf>,
-    /// Write everything as JSON; `-` is standard output
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    reports: Reports,
     /// How progress is shown on standard error
     #[arg(long, value_enum, default_value_t = Style::Auto)]
     progress: Style,
@@ -65,7 +59,7 @@ pub(super) fn run(args: &Args) -> u8 {
 }
 
 fn study(args: &Args) -> Result<(), Failure> {
-    Guard::new(&args.scenes).options([("--report", &args.report), ("--csv", &args.csv), ("--json", &args.json)])?;
+    args.reports.check(&mut Guard::new(&args.scenes))?;
     let settings = args.picture.settings()?;
     let gpu = args.device.open()?;
     let distinct = |list: &[u32]| {
@@ -74,7 +68,7 @@ fn study(args: &Args) -> Result<(), Failure> {
         list.dedup();
         list
     };
-    let plan = Plan {
+    let plan = StudyPlan {
         runs: args.runs as usize,
         seconds: args.seconds,
         depths: distinct(&args.depths),
@@ -92,7 +86,7 @@ fn study(args: &Args) -> Result<(), Failure> {
         args.picture.renderable_effects(scene, &Settings { max_depth: deepest, ..settings })?;
         let effects = |settings: &Settings| args.picture.effects(scene, settings);
         let selection = args.device.selection(gpu.as_ref(), scene, &settings, &effects(&settings));
-        let subject = Subject {
+        let input = StudyInput {
             name: &loaded.name,
             scene,
             settings: &settings,
@@ -101,7 +95,7 @@ fn study(args: &Args) -> Result<(), Failure> {
             selection: &selection,
         };
         let mut progress = Progress::new(args.progress, &format!("study {} of {parts}", number + 1));
-        let study = crate::study::watched(&subject, &plan, |event| match event {
+        let study = crate::study::watched(&input, &plan, |event| match event {
             Event::Done(part) => progress.set(part),
             Event::Measured(study) => lock(&results).unfinished = Some(study.clone()),
         })?;
@@ -125,9 +119,7 @@ fn lock(results: &Mutex<Results>) -> MutexGuard<'_, Results> {
 
 /// What has been measured, and where it goes.
 struct Results {
-    report: Option<PathBuf>,
-    csv: Option<PathBuf>,
-    json: Option<PathBuf>,
+    reports: Reports,
     studies: Vec<Study>,
     /// The scene that is being measured.
     unfinished: Option<Study>,
@@ -136,26 +128,17 @@ struct Results {
 
 impl Results {
     fn new(args: &Args) -> Self {
-        let Args { report, csv, json, .. } = args;
-        let [report, csv, json] = [report, csv, json].map(Clone::clone);
-        Self { report, csv, json, studies: Vec::new(), unfinished: None, hard_cases: None }
-    }
-
-    /// Prints on standard output, unless data goes there.
-    fn show(&self, text: &str) {
-        if ![&self.csv, &self.json].into_iter().flatten().any(|path| path == Path::new("-")) {
-            out!("{text}");
-        }
+        Self { reports: args.reports.clone(), studies: Vec::new(), unfinished: None, hard_cases: None }
     }
 
     fn add(&mut self, study: Study) {
-        self.show(&format!("{}{}", if self.studies.is_empty() { "" } else { "\n" }, study.report()));
+        self.reports.show(&format!("{}{}", if self.studies.is_empty() { "" } else { "\n" }, study.report()));
         self.unfinished = None;
         self.studies.push(study);
     }
 
     fn add_cases(&mut self, cases: HardCases) {
-        self.show(&format!("\n{}", cases.report()));
+        self.reports.show(&format!("\n{}", cases.report()));
         self.hard_cases = Some(cases);
     }
 
@@ -176,20 +159,14 @@ impl Results {
     }
 
     fn write(&self) -> Result<(), Failure> {
-        if let Some(path) = &self.report {
-            save(path, &html(&self.studies, self.hard_cases.as_ref(), &command()))?;
-        }
-        if let Some(path) = &self.csv {
-            save(path, &csv(&self.studies))?;
-        }
-        if let Some(path) = &self.json {
+        let json = || {
             let mut document = serde_json::json!({ "command": command(), "studies": self.studies });
             if let Some(cases) = &self.hard_cases {
                 document["hard_cases"] = serde_json::json!(cases);
             }
-            save_json(path, &document)?;
-        }
-        Ok(())
+            document
+        };
+        self.reports.write(|| html(&self.studies, self.hard_cases.as_ref(), &command()), || csv(&self.studies), json)
     }
 }
 

@@ -10,7 +10,7 @@ use super::options::{DeviceOptions, PictureOptions};
 use super::output::{errln, outln};
 use crate::gpu;
 use crate::threads::{at_once, is_alone};
-use crate::viewer::{Server, Studio, Watched, watch};
+use crate::viewer::{RenderLoop, SceneFile, Server, watch};
 
 /// Arguments of `trueray view`.
 #[derive(Debug, clap::Args)]
@@ -57,19 +57,20 @@ fn view(args: &Args) -> Result<(), Failure> {
     if !args.listen.ip().is_loopback() {
         errln!("trueray: the page is served to the network, without encryption");
     }
-    let wishes = args.picture.wishes(&loaded.scene, args.device.precision)?;
-    let studio = Arc::new(Studio::new(Watched::new(&args.scene, loaded.scene), wishes));
+    let view = args.picture.view_state(&loaded.scene, args.device.precision)?;
+    let render_loop = Arc::new(RenderLoop::new(SceneFile::new(&args.scene, loaded.scene), view));
     let no_thread = |error: std::io::Error| Failure::new(NO_THREAD, format!("the system gives no thread: {error}"));
-    watch(Arc::clone(&studio.watched), Arc::clone(&studio.bell), Arc::clone(&studio.quit)).map_err(no_thread)?;
-    let painter = Arc::clone(&studio);
+    watch(Arc::clone(&render_loop.scene_file), Arc::clone(&render_loop.wake), Arc::clone(&render_loop.quit))
+        .map_err(no_thread)?;
+    let rendering = Arc::clone(&render_loop);
     let device = args.device.clone();
     let mut opened = Some(gpu);
     let mut open = move || -> Result<_, gpu::Error> {
         let gpu = opened.take().map_or_else(|| device.open_with(true), Ok)?;
         Ok(gpu.map(|gpu| Arc::new(gpu.keeping_kernels().interactive())))
     };
-    std::thread::Builder::new().name("studio".into()).spawn(move || painter.run(&mut open)).map_err(no_thread)?;
+    std::thread::Builder::new().name("render".into()).spawn(move || rendering.run(&mut open)).map_err(no_thread)?;
     // All is there that can be refused: who reads this may open it.
     outln!("{}", server.url());
-    server.serve(studio).map_err(|error| Failure::new(OUTPUT, error.to_string()))
+    server.serve(render_loop).map_err(|error| Failure::new(OUTPUT, error.to_string()))
 }

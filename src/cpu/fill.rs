@@ -36,10 +36,10 @@ pub fn nearest_samples(samples: &Samples) -> Vec<u32> {
     }
     let mut next = owners.clone();
     for step in flood_steps(samples.reach()) {
-        let from = Jump { size: (width, height), step: step.cast_signed(), owners: &owners };
+        let flood = Flood { size: (width, height), step: step.cast_signed(), owners: &owners };
         next.par_chunks_mut(across).enumerate().for_each(|(y, row)| {
             for (x, owner) in row.iter_mut().enumerate() {
-                *owner = from.nearer(pixel_at(x, y));
+                *owner = flood.jump(pixel_at(x, y));
             }
         });
         std::mem::swap(&mut owners, &mut next);
@@ -47,19 +47,19 @@ pub fn nearest_samples(samples: &Samples) -> Vec<u32> {
     owners
 }
 
-/// One jump: each pixel asks those around.
-struct Jump<'a> {
+/// The nearest samples that are found by jumps: each pixel asks those around.
+struct Flood<'a> {
     size: (u32, u32),
-    /// How far it looks, in pixels.
+    /// How far a jump looks, in pixels.
     step: i32,
     /// The nearest samples so far.
     owners: &'a [u32],
 }
 
-impl Jump<'_> {
+impl Flood<'_> {
     /// The nearest of the samples that a pixel and those around have for their nearest; of equally near ones the one farther
     /// up, then farther left.
-    fn nearer(&self, pixel: [i32; 2]) -> u32 {
+    fn jump(&self, pixel: [i32; 2]) -> u32 {
         let (width, height) = (self.size.0.cast_signed(), self.size.1.cast_signed());
         let index = |[x, y]: [i32; 2]| y as usize * width as usize + x as usize;
         let distance = |owner| if owner == NO_SAMPLE { u32::MAX } else { distance_squared(pixel, place(owner)) };

@@ -85,7 +85,7 @@ pub(crate) fn roots<T: Real>(at: &Approach<T>, radius: T) -> Option<(T, T)> {
 }
 
 /// Where a ray that starts on the inner wall leaves its own sphere: C = 0, so τ = −2B/A and no quadratic is needed.
-pub(crate) fn exit_root<T: Real>(own: &Own<T>, direction: Vec3<T>, shape: &Shape<T>) -> T {
+pub(crate) fn exit_of<T: Real>(own: &Own<T>, direction: Vec3<T>, shape: &Shape<T>) -> T {
     let direction = direction * shape.inv_scale;
     let projection = -own.local.dot(direction);
     (projection + projection) / direction.dot(direction)
@@ -113,7 +113,7 @@ pub(crate) fn accepted_root<T: Real>(
     let Range { t_min, t_max, .. } = *range;
     if let Some(own) = own.filter(|own| own.shape == shape.index) {
         // The outside of a convex surface is never met again.
-        let t = exit_root(own, ray.direction, shape);
+        let t = exit_of(own, ray.direction, shape);
         return (own.inside && t > t_min && t < t_max).then_some((t, true));
     }
     least_of(roots(&approach(ray, shape), shape.radius)?, range)
@@ -216,7 +216,7 @@ pub(crate) fn nearest_secondary<T: Real>(
 /// Whether a root that counts lies beyond `t_min` and before t = 1: from where both ends lie, without a square root.
 pub(crate) fn blocks<T: Real>(ray: &Ray<T>, shape: &Shape<T>, own: &Own<T>, t_min: T) -> bool {
     if own.shape == shape.index {
-        let t = exit_root(own, ray.direction, shape);
+        let t = exit_of(own, ray.direction, shape);
         return own.inside && t > t_min && t < T::ONE;
     }
     let at = approach(ray, shape);

@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::intersect::{Approach, Own, Ray, approach, exit_root};
+use super::intersect::{Approach, Own, Ray, approach, exit_of};
 use super::scene::{Shape, World};
 use super::vec3::Vec3;
 use crate::precision::Tier;
@@ -164,7 +164,7 @@ impl Margins<'_> {
     /// Where a ray that starts on the inner wall of `sphere`, its own, leaves it.
     pub(super) fn exit(&self, sphere: usize, own: &Own<f64>) -> Crossing {
         let shape = &self.world.shapes[sphere];
-        let t = exit_root(own, self.ray.direction, shape);
+        let t = exit_of(own, self.ray.direction, shape);
         let local = own.local + self.ray.direction * shape.inv_scale * t;
         let at = approach(self.ray, shape);
         let slide = self.slide(shape, local) / length(self.ray.direction);

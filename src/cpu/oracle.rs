@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::dd::Dd;
 use super::intersect::{Hit, Own, Range, Ray, approach, nearest_of, roots};
 use super::real::Real;
-use super::refract::{Snell, refraction_ray};
+use super::refract::{refraction_ray, snell_at};
 use super::scene::{Glass, Material, Shape, World};
 use super::shade::surface_at;
 use super::tangent::Tangents;
@@ -65,7 +65,7 @@ pub fn intersect<T: Real>(origin: DVec3, direction: DVec3, center: DVec3, scale:
 
 /// A body of glass.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Body {
+pub struct GlassBody {
     /// Its centre.
     pub center: DVec3,
     /// Its semi-axes.
@@ -87,7 +87,7 @@ pub struct Passage {
 
 /// The path of the refraction ray through `bodies`, `bounces` surfaces long or until it misses all; by the reference's own code
 /// in `T`, without rounding the bodies to `f64` on the way into object space.
-pub fn refracted<T: Real>(origin: DVec3, direction: DVec3, bodies: &[Body], bounces: u32) -> Passage {
+pub fn refracted<T: Real>(origin: DVec3, direction: DVec3, bodies: &[GlassBody], bounces: u32) -> Passage {
     let world = glass_world::<T>(bodies);
     let mut ray = Ray { origin: Vec3::from_f64(origin), direction: Vec3::from_f64(direction) };
     let mut own: Option<Own<T>> = None;
@@ -96,7 +96,7 @@ pub fn refracted<T: Real>(origin: DVec3, direction: DVec3, bodies: &[Body], boun
     for _ in 0..bounces {
         let Some(found) = hit else { break };
         let surface = surface_at(&world, &ray, &found);
-        let (next, wall) = refraction_ray(&ray, &surface, &Snell::at(&world, &surface));
+        let (next, wall) = refraction_ray(&ray, &surface, &snell_at(&world, &surface));
         ray = next;
         hit = nearest_of(&world, &ray, Some(own.insert(wall)), &world.refraction, &all, None);
     }
@@ -105,16 +105,16 @@ pub fn refracted<T: Real>(origin: DVec3, direction: DVec3, bodies: &[Body], boun
 }
 
 /// `bodies` and nothing else.
-fn glass_world<T: Real>(bodies: &[Body]) -> World<T> {
+fn glass_world<T: Real>(bodies: &[GlassBody]) -> World<T> {
     let ones = Vec3::new(T::ONE, T::ONE, T::ONE);
-    let radii = |body: &Body| Vec3::from_f64(body.scale.abs());
-    let shape = |(index, body): (usize, &Body)| Shape {
+    let radii = |body: &GlassBody| Vec3::from_f64(body.scale.abs());
+    let shape = |(index, body): (usize, &GlassBody)| Shape {
         center: Vec3::from_f64(body.center),
         inv_scale: quotient(ones, radii(body)),
         radius: T::ONE,
         index: index as u32,
     };
-    let material = |body: &Body| Material {
+    let material = |body: &GlassBody| Material {
         scale: radii(body),
         color: Vec3::ZERO,
         ka: T::ZERO,
@@ -123,7 +123,7 @@ fn glass_world<T: Real>(bodies: &[Body]) -> World<T> {
         kr: T::ZERO,
         n: T::ONE,
     };
-    let glass = |body: &Body| {
+    let glass = |body: &GlassBody| {
         let eta = T::from_f64(body.eta);
         Glass { kt: T::ONE, eta, inv_eta: T::ONE / eta }
     };

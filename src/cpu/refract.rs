@@ -33,18 +33,18 @@ impl<T: Real> Snell<T> {
         Self { ratio, cosine, square, bend: excess / (along + square.sqrt()) }
     }
 
-    /// At `surface`: entering where it is seen from outside, leaving where it is seen from inside.
-    pub(crate) fn at(world: &World<T>, surface: &Surface<T>) -> Self {
-        let glass = &world.glasses[surface.sphere];
-        let cosine = surface.normal.dot(surface.view);
-        let ratio = if surface.own.inside { glass.eta } else { glass.inv_eta };
-        Self::new(ratio, if cosine > T::ZERO { cosine } else { T::ZERO })
-    }
-
     /// Whether all light is reflected. Ordered comparison: indices beyond the range of the scalar refract nothing.
     pub(crate) fn is_total(&self) -> bool {
         !(self.square > T::ZERO)
     }
+}
+
+/// Snell's law at `surface`: entering where it is seen from outside, leaving where it is seen from inside.
+pub(crate) fn snell_at<T: Real>(world: &World<T>, surface: &Surface<T>) -> Snell<T> {
+    let glass = &world.glasses[surface.sphere];
+    let cosine = surface.normal.dot(surface.view);
+    let ratio = if surface.own.inside { glass.eta } else { glass.inv_eta };
+    Snell::new(ratio, if cosine > T::ZERO { cosine } else { T::ZERO })
 }
 
 /// The refracted ray, of the length of the one that meets the surface, or on total internal reflection the mirrored one, of

@@ -79,26 +79,15 @@ impl<T: Real> Reference<T> {
         (i < width && j < height).then(|| self.pixel_color(i, j, &mut ()).to_f64())
     }
 
-    /// The colour of a pixel: the mean over its samples, row by row, unclamped; read it beside `shaders/resolve.wgsl`. Taken
-    /// from differences to the first sample, it is exact where all are equal.
+    /// The unclamped colour of a pixel.
     fn pixel_color<W: Witness<T>>(&self, i: u32, j: u32, witness: &mut W) -> Vec3<T> {
-        let mut samples = self.primaries(i, j).map(|primary| trace(&self.world, &primary, witness));
-        let Some(first) = samples.next() else { return Vec3::ZERO };
-        let mut excess = Vec3::ZERO;
-        for color in samples {
-            excess += color - first;
-        }
-        let side = self.camera.samples();
-        if side == 1 {
-            return first;
-        }
-        let count = T::from_f64(f64::from(side * side));
-        first + Vec3::new(excess.x / count, excess.y / count, excess.z / count)
+        let samples = self.primaries(i, j).map(|primary| trace(&self.world, &primary, witness));
+        resolve(samples, self.camera.samples_per_side())
     }
 
     /// The rays of all samples of pixel (column `i`, row `j`), row by row.
     pub(super) fn primaries(&self, i: u32, j: u32) -> impl Iterator<Item = Primary<'_, T>> {
-        let side = self.camera.samples();
+        let side = self.camera.samples_per_side();
         let seen = self.world.accel.screen.at(i, j);
         (0..side * side).map(move |s| {
             let sample = [i * side + s % side, j * side + s / side];
@@ -116,7 +105,7 @@ impl<T: Real> Reference<T> {
         const CHUNK: usize = 256;
         check_rows(self.size(), first, rgb.len())?;
         let width = self.camera.width() as usize;
-        let samples = u64::from(self.camera.samples() * self.camera.samples());
+        let samples = u64::from(self.camera.samples_per_side() * self.camera.samples_per_side());
         let chunk = |(chunk, pixels): (usize, &mut [u8])| {
             let mut tally = Tally::default();
             for (k, pixel) in pixels.as_chunks_mut::<3>().0.iter_mut().enumerate() {
@@ -139,7 +128,7 @@ impl<T: Real> Reference<T> {
     /// [`Misuse::Pixel`] where a pixel is not of the picture, [`Misuse::Colors`] where there is not one colour for each.
     pub fn pixels(&self, pixels: &[[u32; 2]], colors: &mut [[u8; 3]]) -> Result<Tally, Misuse> {
         check_pixels(self.size(), pixels, colors.len())?;
-        let samples = u64::from(self.camera.samples() * self.camera.samples());
+        let samples = u64::from(self.camera.samples_per_side() * self.camera.samples_per_side());
         let each = |(&[i, j], target): (&[u32; 2], &mut [u8; 3])| {
             let mut tally = Tally::default();
             let color = self.pixel_color(i, j, &mut tally);
@@ -149,6 +138,22 @@ impl<T: Real> Reference<T> {
         };
         Ok(pixels.par_iter().zip(colors).with_min_len(256).map(each).reduce(Tally::default, Tally::plus))
     }
+}
+
+/// The mean over a pixel's samples, row by row, `side` of them in each; read it beside `shaders/resolve.wgsl`. Taken from
+/// differences to the first sample, it is exact where all are equal.
+#[inline]
+fn resolve<T: Real>(mut samples: impl Iterator<Item = Vec3<T>>, side: u32) -> Vec3<T> {
+    let Some(first) = samples.next() else { return Vec3::ZERO };
+    let mut excess = Vec3::ZERO;
+    for color in samples {
+        excess += color - first;
+    }
+    if side == 1 {
+        return first;
+    }
+    let count = T::from_f64(f64::from(side * side));
+    first + Vec3::new(excess.x / count, excess.y / count, excess.z / count)
 }
 
 /// The 8-bit RGB of an unclamped colour, calculated in its scalar; NaN becomes 0. Read it beside `shaders/quantize.wgsl`.

@@ -59,14 +59,14 @@ pub(crate) struct LightTerms<T> {
     pub specular: T,
 }
 
-pub(crate) fn light_terms<T: Real>(
+/// The specular term, after 1 − cos of the angle whose cosine it is a power of.
+fn specular_term<T: Real>(
     surface: &Surface<T>,
     material: &Material<T>,
     to_light: Vec3<T>,
     n_dot_l: T,
     model: Specular,
-) -> LightTerms<T> {
-    let diffuse = material.kd * n_dot_l;
+) -> (T, T) {
     // 1 − cos of the angle between two unit vectors is half the square of their difference.
     let (a, b) = match model {
         Specular::Phong => (surface.normal * (n_dot_l + n_dot_l) - to_light, surface.view),
@@ -74,7 +74,40 @@ pub(crate) fn light_terms<T: Real>(
     };
     let difference = a - b;
     let d = T::from_f64(0.5) * difference.dot(difference);
-    LightTerms { to_light, d, diffuse, specular: material.ks * specular_power(d, material.n) }
+    (d, material.ks * specular_power(d, material.n))
+}
+
+/// A colour and, where it reaches the surface, the light with this index.
+#[inline]
+fn with_light<T: Real, W: Witness<T>>(
+    world: &World<T>,
+    mut color: Vec3<T>,
+    index: usize,
+    surface: &Surface<T>,
+    witness: &mut W,
+) -> Vec3<T> {
+    let (light, material) = (&world.lights[index], &world.materials[surface.sphere]);
+    let shadow_ray = Ray { origin: surface.position, direction: light.position - surface.position };
+    let distance_squared = shadow_ray.direction.dot(shadow_ray.direction);
+    let to_light = shadow_ray.direction * (T::ONE / distance_squared.sqrt());
+    let n_dot_l = surface.normal.dot(to_light);
+    // Not lit from behind, and not by a light at distance 0, where N·L is NaN.
+    if !witness.lit(world, surface, light, n_dot_l, n_dot_l > T::ZERO) {
+        return color;
+    }
+    if world.shadows {
+        let is_blocked = any_hit(world, &shadow_ray, &surface.own, index);
+        if witness.blocked(world, &shadow_ray, &surface.own, is_blocked) {
+            return color;
+        }
+    }
+    let diffuse = material.kd * n_dot_l;
+    let (d, specular) = specular_term(surface, material, to_light, n_dot_l, world.specular);
+    let terms = LightTerms { to_light, d, diffuse, specular };
+    color += light.intensity * material.color * terms.diffuse;
+    color += light.intensity * terms.specular;
+    witness.shaded(world, surface, light, &terms);
+    color
 }
 
 /// Colour of a surface point without its reflection.
@@ -82,25 +115,8 @@ pub(crate) fn light_terms<T: Real>(
 pub(crate) fn local_color<T: Real, W: Witness<T>>(world: &World<T>, surface: &Surface<T>, witness: &mut W) -> Vec3<T> {
     let material = &world.materials[surface.sphere];
     let mut color = world.ambient * material.color * material.ka;
-    for (index, light) in world.lights.iter().enumerate() {
-        let shadow_ray = Ray { origin: surface.position, direction: light.position - surface.position };
-        let distance_squared = shadow_ray.direction.dot(shadow_ray.direction);
-        let to_light = shadow_ray.direction * (T::ONE / distance_squared.sqrt());
-        let n_dot_l = surface.normal.dot(to_light);
-        // Not lit from behind, and not by a light at distance 0, where N·L is NaN.
-        if !witness.lit(world, surface, light, n_dot_l, n_dot_l > T::ZERO) {
-            continue;
-        }
-        if world.shadows {
-            let is_blocked = any_hit(world, &shadow_ray, &surface.own, index);
-            if witness.blocked(world, &shadow_ray, &surface.own, is_blocked) {
-                continue;
-            }
-        }
-        let terms = light_terms(surface, material, to_light, n_dot_l, world.specular);
-        color += light.intensity * material.color * terms.diffuse;
-        color += light.intensity * terms.specular;
-        witness.shaded(world, surface, light, &terms);
+    for index in 0..world.lights.len() {
+        color = with_light(world, color, index, surface, witness);
     }
     color
 }

@@ -1,22 +1,32 @@
 //! A pixel's colour: the primary ray and its chain of reflections; read it beside `shaders/see.wgsl` and
 //! `shaders/path_in_place.wgsl`.
 
-use super::intersect::{Primary, Ray, nearest_secondary, nearest_seen};
+use super::intersect::{Hit, Primary, Ray, nearest_secondary, nearest_seen};
 use super::real::Real;
 use super::scene::World;
 use super::shade::{Surface, local_color, surface_at};
-use super::trace_refraction::trace_refraction;
+use super::trace_refraction::tree_color;
 use super::vec3::Vec3;
 use super::witness::Witness;
 
 /// The unclamped colour seen along `primary`.
 pub(crate) fn trace<T: Real, W: Witness<T>>(world: &World<T>, primary: &Primary<T>, witness: &mut W) -> Vec3<T> {
     if world.refracts {
-        return trace_refraction(world, primary, witness);
+        return tree_color(world, primary, witness);
     }
-    let mut ray = primary.ray;
-    let mut hit = nearest_seen(world, primary);
-    hit = witness.nearest(world, &ray, None, &world.primary, hit);
+    let hit = nearest_seen(world, primary);
+    let hit = witness.nearest(world, &primary.ray, None, &world.primary, hit);
+    follow(world, primary.ray, hit, witness)
+}
+
+/// From the hit of a primary ray on, to the end of its path.
+#[inline]
+fn follow<T: Real, W: Witness<T>>(
+    world: &World<T>,
+    mut ray: Ray<T>,
+    mut hit: Option<Hit<T>>,
+    witness: &mut W,
+) -> Vec3<T> {
     if hit.is_none() {
         witness.background(world);
         return world.background;

@@ -3,7 +3,7 @@
 
 use super::intersect::{Own, Primary, Ray, nearest_secondary, nearest_seen};
 use super::real::Real;
-use super::refract::{Snell, refraction_ray};
+use super::refract::{refraction_ray, snell_at};
 use super::scene::World;
 use super::shade::{local_color, surface_at};
 use super::trace::reflection_ray;
@@ -11,7 +11,7 @@ use super::vec3::Vec3;
 use super::witness::Witness;
 
 /// A refraction ray that waits until the reflected ray beside it has been followed to its end.
-struct Pending<T> {
+struct Waiting<T> {
     ray: Ray<T>,
     own: Own<T>,
     throughput: T,
@@ -22,16 +22,12 @@ struct Pending<T> {
 /// The unclamped colour seen along `primary`: depth-first, the reflected ray first. Each depth leaves one refraction ray
 /// behind at the most, so that no more than `max_depth` wait.
 #[inline(never)]
-pub(super) fn trace_refraction<T: Real, W: Witness<T>>(
-    world: &World<T>,
-    primary: &Primary<T>,
-    witness: &mut W,
-) -> Vec3<T> {
+pub(super) fn tree_color<T: Real, W: Witness<T>>(world: &World<T>, primary: &Primary<T>, witness: &mut W) -> Vec3<T> {
     let (mut ray, mut own, mut range) = (primary.ray, None, world.primary);
     let mut color = Vec3::ZERO;
     let mut throughput = T::ONE;
     let mut depth = 0;
-    let mut pending: Vec<Pending<T>> = Vec::new();
+    let mut waiting: Vec<Waiting<T>> = Vec::new();
     // One looks through glass at the background; a ray that was reflected and hits nothing adds black.
     let mut shows_background = true;
     loop {
@@ -49,9 +45,9 @@ pub(super) fn trace_refraction<T: Real, W: Witness<T>>(
                 let kt = world.glasses[surface.sphere].kt;
                 if kt != T::ZERO {
                     let throughput = throughput.weakened(kt);
-                    let snell = witness.refracted(world, &surface, Snell::at(world, &surface), throughput);
+                    let snell = witness.refracted(world, &surface, snell_at(world, &surface), throughput);
                     let (ray, own) = refraction_ray(&ray, &surface, &snell);
-                    pending.push(Pending { ray, own, throughput, depth: depth + 1, shows_background });
+                    waiting.push(Waiting { ray, own, throughput, depth: depth + 1, shows_background });
                 }
                 let kr = world.materials[surface.sphere].kr;
                 if kr != T::ZERO {
@@ -69,7 +65,7 @@ pub(super) fn trace_refraction<T: Real, W: Witness<T>>(
             witness.background(world);
             color += world.background * throughput;
         }
-        let Some(next) = pending.pop() else { return color };
+        let Some(next) = waiting.pop() else { return color };
         (ray, own, range) = (next.ray, Some(next.own), world.refraction);
         (throughput, depth, shows_background) = (next.throughput, next.depth, next.shows_background);
         witness.resumed();

@@ -116,19 +116,23 @@ pub fn render_partial(
     }
     let start = Instant::now();
     let is_full = samples.pixels().len() as u64 == u64::from(samples.size().0) * u64::from(samples.size().1);
-    let rgb =
-        if is_full { in_place(samples, &colors) } else { Filler::new(backend)?.filled(samples, &colors, fill)? };
+    let rgb = if is_full { whole(samples, &colors) } else { Filler::new(backend)?.filled(samples, &colors, fill)? };
     let fill_ms = if is_full { Duration::ZERO } else { start.elapsed() };
     Ok(PartialPicture { rgb, not_finite, fill_ms: ms(fill_ms) })
 }
 
 /// The picture of `colors`, one for each of `samples`; black elsewhere.
-fn in_place(samples: &Samples, colors: &[[u8; 3]]) -> Vec<u8> {
+fn whole(samples: &Samples, colors: &[[u8; 3]]) -> Vec<u8> {
     let (width, height) = samples.size();
     let mut rgb = vec![0; width as usize * height as usize * 3];
-    let pixels = rgb.as_chunks_mut::<3>().0;
-    for (&[x, y], color) in samples.pixels().iter().zip(colors) {
-        pixels[y as usize * width as usize + x as usize] = *color;
-    }
+    put_pixels(samples.pixels(), colors, width, &mut rgb);
     rgb
+}
+
+/// Puts the colours of pixels into a picture of 3 bytes a pixel.
+pub(crate) fn put_pixels(pixels: &[[u32; 2]], colors: &[[u8; 3]], width: u32, rgb: &mut [u8]) {
+    let rgb = rgb.as_chunks_mut::<3>().0;
+    for (&[x, y], color) in pixels.iter().zip(colors) {
+        rgb[y as usize * width as usize + x as usize] = *color;
+    }
 }

@@ -59,7 +59,7 @@ fn write_scene(text: &mut String, scene: &Scene, settings: &Settings, effects: &
         writeln!(text, "light_source {{ {}, rgb {} }}", Triple(*position), Triple(*intensity))?;
     }
     for sphere in &scene.spheres {
-        let body = Body { sphere, ambient: *ambient, settings, effects };
+        let body = SphereText { sphere, ambient: *ambient, settings, effects };
         match View::of(&scene.window, sphere) {
             View::Whole => writeln!(text, "{body} }}")?,
             View::Hidden => writeln!(text, "{body} hollow no_image }}")?,
@@ -85,14 +85,14 @@ fn sky(scene: &Scene) -> f64 {
 }
 
 /// A sphere up to its closing brace.
-struct Body<'a> {
+struct SphereText<'a> {
     sphere: &'a Sphere,
     ambient: DVec3,
     settings: &'a Settings,
     effects: &'a Effects,
 }
 
-impl fmt::Display for Body<'_> {
+impl fmt::Display for SphereText<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Sphere { center, scale, color, ka, kd, ks, kr, n, .. } = *self.sphere;
         let has = |effect| self.effects.set.has(effect);

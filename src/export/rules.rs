@@ -111,7 +111,7 @@ impl Found<'_> {
             let what = "a scene is exported with the camera of its file: leave --eye, --look-at and --up out";
             self.obstacles.push(Obstacle::Settings(what.into()));
         }
-        if settings.samples > 1 {
+        if settings.samples_per_side > 1 {
             let what = format!("{} has no regular grid of samples: export one sample a pixel", self.peer);
             self.obstacles.push(Obstacle::Settings(what));
         }

@@ -16,9 +16,9 @@ use crate::settings::{Settings, Specular};
 const SAMPLE: (f64, f64) = (1.0, 0.0);
 
 /// `x y z`, mirrored into the left-handed space.
-struct Place(DVec3);
+struct Mirrored(DVec3);
 
-impl fmt::Display for Place {
+impl fmt::Display for Mirrored {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let DVec3 { x, y, z } = self.0;
         write!(f, "{x:?} {y:?} {:?}", -z)
@@ -56,7 +56,7 @@ fn write_scene(text: &mut String, scene: &Scene, settings: &Settings, effects: &
     writeln!(text, "  FRUSTUM {left:?} {right:?} {bottom:?} {top:?}\nEND_CAMERA")?;
     writeln!(text, "BACKGROUND {}", Color(*background))?;
     for Light { position, intensity } in scene.lights.iter().filter(|light| light.intensity != DVec3::ZERO) {
-        writeln!(text, "LIGHT CENTER {} RAD 0 COLOR {}", Place(*position), Color(*intensity))?;
+        writeln!(text, "LIGHT CENTER {} RAD 0 COLOR {}", Mirrored(*position), Color(*intensity))?;
     }
     // Of two surfaces at one distance it shows the one that comes last in its file, here that is the first.
     for Sphere { center, scale, color, ka, kd, ks, kr, n, .. } in scene.spheres.iter().rev() {
@@ -64,7 +64,7 @@ fn write_scene(text: &mut String, scene: &Scene, settings: &Settings, effects: &
         let ambient = on(Effect::Ambient, ka * ambient.x);
         let (diffuse, phong) = (on(Effect::Diffuse, *kd), on(Effect::Specular, *ks));
         let mirror = on(Effect::Reflections, *kr);
-        writeln!(text, "SPHERE CENTER {} RAD {:?}", Place(*center), scale.x.abs())?;
+        writeln!(text, "SPHERE CENTER {} RAD {:?}", Mirrored(*center), scale.x.abs())?;
         writeln!(
             text,
             "  TEXTURE AMBIENT {ambient:?} DIFFUSE {diffuse:?} SPECULAR {mirror:?} OPACITY 1 PHONG PLASTIC {phong:?} PHONG_SIZE {n:?} COLOR {} TEXFUNC 0",

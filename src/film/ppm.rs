@@ -4,7 +4,7 @@
 //! that one; it may be anywhere before a P6 raster, also right after the maximum, and anywhere in P3. Lines may be longer
 //! than the 70 characters that writers should keep to.
 
-use super::problem::{Place, Problem, SamplePosition, Warning};
+use super::problem::{FilePosition, Problem, SamplePosition, Warning};
 use super::read::{Leniency, Reading};
 use super::{Picture, sample_count};
 use crate::words::count;
@@ -195,7 +195,7 @@ struct Tally<'a> {
 
 impl Tally<'_> {
     /// Called for a whole number out of range.
-    fn out_of_range(&mut self, place: Place, index: usize, found: String) -> Result<(), Problem> {
+    fn out_of_range(&mut self, place: FilePosition, index: usize, found: String) -> Result<(), Problem> {
         let (sample, maximum) = (self.header.position(index), self.header.maximum);
         if self.leniency == Leniency::Strict {
             return Err(Problem::OutOfRange { place, sample, found, maximum });
@@ -208,7 +208,7 @@ impl Tally<'_> {
     }
 
     /// Called at the end of the file with the samples found; makes up the missing ones.
-    fn complete(&mut self, rgb: &mut Vec<u8>, place: Place) -> Result<(), Problem> {
+    fn complete(&mut self, rgb: &mut Vec<u8>, place: FilePosition) -> Result<(), Problem> {
         let expected = self.header.samples;
         let count = expected - rgb.len();
         if count == 0 {
@@ -227,7 +227,7 @@ impl Tally<'_> {
     }
 
     /// Called for data after the last sample.
-    fn trailing(&mut self, place: Place, bytes: usize, found: String) -> Result<(), Problem> {
+    fn trailing(&mut self, place: FilePosition, bytes: usize, found: String) -> Result<(), Problem> {
         if self.leniency == Leniency::Strict {
             return Err(Problem::Trailing { place, found, expected: self.header.samples as u64 });
         }
@@ -247,17 +247,17 @@ fn plain_samples(scanner: &mut Scanner, tally: &mut Tally) -> Result<Vec<u8>, Pr
     let mut rgb = Vec::with_capacity(header.samples.min((scanner.bytes.len() - scanner.at) / 2 + 1));
     while rgb.len() < header.samples {
         let Some(token) = scanner.token() else { break };
-        rgb.push(plain_sample(token, Place::Line(scanner.line), rgb.len(), tally)?);
+        rgb.push(plain_sample(token, FilePosition::Line(scanner.line), rgb.len(), tally)?);
     }
-    tally.complete(&mut rgb, Place::Line(scanner.line))?;
+    tally.complete(&mut rgb, FilePosition::Line(scanner.line))?;
     if let Some(token) = scanner.token() {
         let bytes = scanner.bytes.len() - (scanner.at - token.len());
-        tally.trailing(Place::Line(scanner.line), bytes, excerpt(token))?;
+        tally.trailing(FilePosition::Line(scanner.line), bytes, excerpt(token))?;
     }
     Ok(rgb)
 }
 
-fn plain_sample(token: &[u8], place: Place, index: usize, tally: &mut Tally) -> Result<u8, Problem> {
+fn plain_sample(token: &[u8], place: FilePosition, index: usize, tally: &mut Tally) -> Result<u8, Problem> {
     let header = tally.header;
     let value = match number(token) {
         Number::Value(value) if value <= header.maximum => return Ok(header.scale(value)),
@@ -287,7 +287,7 @@ fn binary_samples(mut bytes: Vec<u8>, mut raster: usize, tally: &mut Tally) -> R
     let end = raster.saturating_add(size);
     if length > end {
         let excess = length - end;
-        tally.trailing(Place::Byte(end as u64), excess, format!("data ({})", count(excess as u64, "byte")))?;
+        tally.trailing(FilePosition::Byte(end as u64), excess, format!("data ({})", count(excess as u64, "byte")))?;
         bytes.truncate(end);
     }
     if header.maximum == 255 {
@@ -295,7 +295,7 @@ fn binary_samples(mut bytes: Vec<u8>, mut raster: usize, tally: &mut Tally) -> R
     } else {
         bytes = scaled_samples(&bytes, raster, sample_bytes, tally)?;
     }
-    tally.complete(&mut bytes, Place::Byte(length as u64))?;
+    tally.complete(&mut bytes, FilePosition::Byte(length as u64))?;
     Ok(bytes)
 }
 
@@ -314,7 +314,7 @@ fn scaled_samples(bytes: &[u8], raster: usize, sample_bytes: usize, tally: &mut 
         let value = sample.iter().fold(0, |value, &byte| value << 8 | byte as u32);
         if value > header.maximum {
             let offset = raster + index * sample_bytes;
-            tally.out_of_range(Place::Byte(offset as u64), index, value.to_string())?;
+            tally.out_of_range(FilePosition::Byte(offset as u64), index, value.to_string())?;
         }
         rgb.push(header.scale(value.min(header.maximum)));
     }

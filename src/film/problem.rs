@@ -35,14 +35,14 @@ impl std::error::Error for ReadError {}
 
 /// A place in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
+pub enum FilePosition {
     /// A line of text, counted from 1.
     Line(u64),
     /// A byte's offset from the start of the file, counted from 0.
     Byte(u64),
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for FilePosition {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::Line(line) => write!(f, "line {line}"),
@@ -98,7 +98,7 @@ pub enum Problem {
     /// A sample that is a whole number out of range.
     OutOfRange {
         /// Where it stands.
-        place: Place,
+        place: FilePosition,
         /// Which sample it is.
         sample: SamplePosition,
         /// What stands there.
@@ -109,7 +109,7 @@ pub enum Problem {
     /// A sample that is no whole number.
     NotANumber {
         /// Where it stands.
-        place: Place,
+        place: FilePosition,
         /// Which sample it is.
         sample: SamplePosition,
         /// What stands there.
@@ -120,7 +120,7 @@ pub enum Problem {
     /// The file ends before its last sample.
     Truncated {
         /// Where it ends.
-        place: Place,
+        place: FilePosition,
         /// The first sample that is missing.
         missing: SamplePosition,
         /// Number of samples that the header promises.
@@ -129,7 +129,7 @@ pub enum Problem {
     /// Something follows the last sample.
     Trailing {
         /// Where it starts.
-        place: Place,
+        place: FilePosition,
         /// What it is.
         found: String,
         /// Number of samples that the header promises.
@@ -243,7 +243,7 @@ pub enum Warning {
         /// How many.
         count: u64,
         /// Where the first one stands.
-        place: Place,
+        place: FilePosition,
         /// Which one it is.
         sample: SamplePosition,
         /// What stands there.

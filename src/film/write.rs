@@ -10,7 +10,7 @@ use std::sync::{Arc, OnceLock};
 use png::StreamWriter;
 
 use super::{Format, sample_count};
-use crate::atomic::{self, Part, Place};
+use crate::atomic::{self, Destination, Part};
 
 /// Where a picture goes.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -192,14 +192,14 @@ fn invalid(reason: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> io::E
 /// What remains to be done with the file once its bytes are complete.
 enum Placement {
     InPlace,
-    Rename(Place),
+    Rename(Destination),
 }
 
 impl Placement {
     fn settle(self) -> io::Result<()> {
         match self {
             Self::InPlace => Ok(()),
-            Self::Rename(place) => place.take(),
+            Self::Rename(destination) => destination.commit(),
         }
     }
 }
@@ -291,8 +291,8 @@ fn folder_of(path: &Path) -> &Path {
 
 fn temporary_for(path: &Path, permissions: Option<Permissions>, bytes: u64) -> io::Result<(Raw, Placement)> {
     ensure_room(path, bytes)?;
-    let (part, place) = atomic::begin(path, permissions)?;
-    Ok((Raw::Part(part), Placement::Rename(place)))
+    let (part, destination) = atomic::begin(path, permissions)?;
+    Ok((Raw::Part(part), Placement::Rename(destination)))
 }
 
 enum Raw {

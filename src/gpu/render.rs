@@ -245,7 +245,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         drop(list_tables);
         let kept = keep(accel);
         resources.extend(scene_resources(&gpu.device, tables, &packed, &specialisation)?);
-        let samples = u64::from(settings.samples * settings.samples);
+        let samples = u64::from(settings.samples_per_side * settings.samples_per_side);
         let tests_per_pixel = samples
             * (scene.spheres.len().min(64) as u64 + 1)
             * (1 + scene.lights.len() as u64 * u64::from(effects.set.has(Effect::Shadows)))

@@ -1,7 +1,7 @@
 //! The tuning of a device: what is kept for it, or what its class begins with.
 
 use super::device::info::DeviceInfo;
-use crate::tuning::{Class, Kept, Source, Tuning, load};
+use crate::tuning::{Class, Source, StoredTuning, Tuning, load};
 
 /// A device's tuning and where it comes from.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,10 +24,10 @@ impl DeviceTuning {
         let of_class =
             |warning| Self { tuning: Tuning::of(class), source: Source::Class, warning, closed: None, class };
         match load(&info.name, &info.driver) {
-            Kept::Nothing => of_class(None),
-            Kept::Unusable(why) => of_class(Some(why)),
-            Kept::Closed(why) => Self { closed: Some(why), ..of_class(None) },
-            Kept::Tuning(tuning, path) => match info.problem_with(&tuning) {
+            StoredTuning::Nothing => of_class(None),
+            StoredTuning::Unusable(why) => of_class(Some(why)),
+            StoredTuning::Closed(why) => Self { closed: Some(why), ..of_class(None) },
+            StoredTuning::Tuning(tuning, path) => match info.problem_with(&tuning) {
                 None => Self { tuning, source: Source::File(path), warning: None, closed: None, class },
                 Some(problem) => of_class(Some(format!("the tuning in {} is ignored: {problem}", path.display()))),
             },

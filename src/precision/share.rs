@@ -220,7 +220,7 @@ impl Sums {
 }
 
 /// One of the spheres among which shadows and images are counted; it stands for `weight` of them.
-struct Sample<'a> {
+struct WeightedSphere<'a> {
     index: usize,
     weight: f64,
     sphere: &'a Sphere,
@@ -405,18 +405,18 @@ impl<'a> Shares<'a> {
     }
 
     /// The spheres among which shadows and images are counted.
-    fn samples(&self, sums: &Sums) -> Vec<Sample<'a>> {
+    fn samples(&self, sums: &Sums) -> Vec<WeightedSphere<'a>> {
         let spheres = &self.scene.spheres;
         let sample = |index: usize, weight: f64| {
             let sphere = &spheres[index];
-            Sample { index, weight, sphere, size: axes_of(sphere).0, seen: self.seen(sphere) }
+            WeightedSphere { index, weight, sphere, size: axes_of(sphere).0, seen: self.seen(sphere) }
         };
         let chosen = chosen(spheres.len(), AMONG, || indices(&sums.large, &sums.wide));
         chosen.into_iter().map(|(index, weight)| sample(index, weight)).collect()
     }
 
     /// What is to be seen on one sphere of all others.
-    fn on(&self, sample: &Sample, samples: &[Sample]) -> Option<OnSphere> {
+    fn on(&self, sample: &WeightedSphere, samples: &[WeightedSphere]) -> Option<OnSphere> {
         let seen = sample.seen?;
         let Outline { area, place, distance, stretch, perimeter, .. } = seen.outline;
         let patch = area.sqrt() * distance / stretch;

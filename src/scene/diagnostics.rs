@@ -108,14 +108,14 @@ impl<'a> Line<'a> {
         &self.bytes[span.start..span.end]
     }
 
-    pub(super) fn place(self, span: Span) -> Place<'a> {
-        Place { line: self, span }
+    pub(super) fn place(self, span: Span) -> Location<'a> {
+        Location { line: self, span }
     }
 }
 
 /// Where a diagnostic points.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Place<'a> {
+pub(super) struct Location<'a> {
     pub(super) line: Line<'a>,
     pub(super) span: Span,
 }
@@ -127,7 +127,7 @@ pub(super) struct Detail<'a> {
     pub(super) help: Option<String>,
     /// Shown instead of the token where the place is empty.
     pub(super) absent: &'static str,
-    pub(super) earlier: Option<(Place<'a>, &'static str)>,
+    pub(super) earlier: Option<(Location<'a>, &'static str)>,
 }
 
 impl Detail<'_> {
@@ -175,7 +175,7 @@ pub(super) struct Collector {
 impl Collector {
     /// Counts an error; `detail` is only asked while errors are kept.
     #[cold]
-    pub(super) fn error<'a>(&mut self, place: Place<'_>, detail: impl FnOnce() -> Detail<'a>) {
+    pub(super) fn error<'a>(&mut self, place: Location<'_>, detail: impl FnOnce() -> Detail<'a>) {
         self.errors += 1;
         if self.errors <= ERRORS_KEPT {
             self.kept.push(Diagnostic::new(Severity::Error, place, detail()));
@@ -184,7 +184,7 @@ impl Collector {
 
     /// Counts a warning; `detail` is only asked while warnings of this topic are kept.
     #[cold]
-    pub(super) fn warning<'a>(&mut self, topic: Topic, place: Place<'_>, detail: impl FnOnce() -> Detail<'a>) {
+    pub(super) fn warning<'a>(&mut self, topic: Topic, place: Location<'_>, detail: impl FnOnce() -> Detail<'a>) {
         let count = &mut self.warnings[topic as usize];
         *count += 1;
         if *count <= WARNINGS_KEPT {
@@ -219,7 +219,7 @@ impl Collector {
 }
 
 impl Diagnostic {
-    fn new(severity: Severity, place: Place<'_>, detail: Detail<'_>) -> Self {
+    fn new(severity: Severity, place: Location<'_>, detail: Detail<'_>) -> Self {
         let token = place.line.token(place.span);
         Self {
             severity,
@@ -295,7 +295,7 @@ struct Excerpt {
 }
 
 impl Excerpt {
-    fn new(place: Place<'_>) -> Self {
+    fn new(place: Location<'_>) -> Self {
         let Span { start, end } = place.span;
         let bytes = place.line.bytes;
         let from = character_start(bytes, start.saturating_sub(SHOWN_BEFORE));
@@ -401,7 +401,7 @@ impl<'a> Files<'a> for Snippet<'_> {
 }
 
 /// Column of the place's first character in the line, from 1; nothing is copied, the line may be of any length.
-fn column(place: Place<'_>) -> usize {
+fn column(place: Location<'_>) -> usize {
     let before = &place.line.bytes[..place.span.start];
     let characters =
         before.utf8_chunks().map(|chunk| chunk.valid().chars().count() + usize::from(!chunk.invalid().is_empty()));

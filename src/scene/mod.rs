@@ -12,5 +12,5 @@ mod write;
 pub use check::{Invalid, SceneError};
 pub use diagnostics::{Diagnostic, Omitted, Severity};
 pub use foreign::foreign_kind;
-pub use model::{Light, MAX_RESOLUTION, Names, Scene, Sphere, Window};
+pub use model::{Light, MAX_RESOLUTION, Names, Scene, Sphere, Window, resolution};
 pub use parse::{Parsed, parse};

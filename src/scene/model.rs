@@ -7,6 +7,18 @@ use crate::words::visible;
 /// The greatest accepted `RES` value per axis: pixel numbers up to here are exact in `f32`.
 pub const MAX_RESOLUTION: u32 = 1 << 24;
 
+/// Columns and rows from a text such as `640x480`.
+///
+/// # Errors
+///
+/// What was expected.
+pub fn resolution(text: &str) -> Result<(u32, u32), String> {
+    let side = |text: &str| text.trim().parse().ok().filter(|side| (1..=MAX_RESOLUTION).contains(side));
+    text.split_once(['x', 'X', '×'])
+        .and_then(|(width, height)| Some((side(width)?, side(height)?)))
+        .ok_or_else(|| format!("expected WxH with sides from 1 to {MAX_RESOLUTION}, such as 640x480"))
+}
+
 /// A whole scene: what is seen, from where, and where the picture goes.
 ///
 /// Fields can be set at will: `Scene { spheres, lights, ..Scene::new(window, 640, 480) }`.

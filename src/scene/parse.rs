@@ -12,7 +12,7 @@ use glam::DVec3;
 pub(super) use self::keyword::{Field, Keyword};
 use self::keyword::{Guess, MAX_FIELDS, Rule};
 use self::number::{Fault, is_tiny, parse_number};
-use super::diagnostics::{Collector, Detail, Diagnostic, Line, Omitted, Place, Span, Topic, render, shown};
+use super::diagnostics::{Collector, Detail, Diagnostic, Line, Location, Omitted, Span, Topic, render, shown};
 use super::{Light, MAX_RESOLUTION, Names, Scene, Sphere, Window};
 use crate::words::{count, is_hidden};
 
@@ -218,7 +218,7 @@ impl<'a> Parser<'a> {
         valid.then_some(values)
     }
 
-    fn number(&mut self, keyword: Keyword, field: &Field, place: Place<'_>) -> Option<f64> {
+    fn number(&mut self, keyword: Keyword, field: &Field, place: Location<'_>) -> Option<f64> {
         let token = place.line.token(place.span);
         if field.rule == Rule::Pixels {
             let pixels = parse_pixels(token);
@@ -237,7 +237,7 @@ impl<'a> Parser<'a> {
     }
 
     /// Whether the field takes the number; an error is reported if not, a warning if the number is unusual.
-    fn check(&mut self, keyword: Keyword, field: &Field, number: f64, place: Place<'_>) -> bool {
+    fn check(&mut self, keyword: Keyword, field: &Field, number: f64, place: Location<'_>) -> bool {
         let token = place.line.token(place.span);
         if is_tiny(number, token) {
             self.collector.warning(Topic::Tiny, place, || {
@@ -307,7 +307,7 @@ impl<'a> Parser<'a> {
     }
 
     /// `broken` is the line that this one probably continues.
-    fn refuse_keyword(&mut self, place: Place<'_>, broken: Option<usize>) {
+    fn refuse_keyword(&mut self, place: Location<'_>, broken: Option<usize>) {
         let token = place.line.token(place.span);
         let Guess { keyword, help } = keyword::guess(token);
         if let Some(keyword) = keyword {
@@ -430,7 +430,7 @@ fn file_name(token: &[u8]) -> Result<&str, NameFault> {
     Ok(name)
 }
 
-fn bad_output(place: Place<'_>, fault: &NameFault) -> Detail<'static> {
+fn bad_output(place: Location<'_>, fault: &NameFault) -> Detail<'static> {
     let message = format!("OUTPUT `{}` is not a plain file name", shown(place.line.token(place.span)));
     match fault {
         NameFault::Encoding => Detail::new(message, "expected a file name in UTF-8"),
@@ -575,7 +575,7 @@ fn invisible(token: &[u8]) -> Option<String> {
 }
 
 /// The first token too many, or the end of the line if one is missing.
-fn wrong_count_place<'a>(keyword: Keyword, line: Line<'a>, tokens: &Tokens) -> Place<'a> {
+fn wrong_count_place<'a>(keyword: Keyword, line: Line<'a>, tokens: &Tokens) -> Location<'a> {
     let form = keyword.form();
     let most = 1 + usize::from(form.named) + form.fields.len();
     let surplus = tokens.kept().get(most).copied();

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::rays;
 use crate::gpu::{Error, Gpu, Kernel, Prober, Question};
 use crate::random::Random;
-use crate::study::Sample;
+use crate::report::Timings;
 
 /// Time of one ray–ellipsoid test.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -13,7 +13,7 @@ pub struct Cost {
     /// The kernel.
     pub kernel: &'static str,
     /// The runs, in ns a test; dispatches by wall clock, from submission to completion.
-    pub ns: Sample,
+    pub ns: Timings,
     /// Median over that of the schoolbook formula.
     pub ratio: f64,
 }
@@ -27,21 +27,21 @@ pub fn cost(gpu: &Gpu, kernels: &[Kernel], count: usize, seed: u64, runs: usize)
         match Prober::new(gpu, *kernel) {
             Ok(mut prober) => {
                 prober.ask(Question::Nearest, &batch)?;
-                probers.push((kernel.name(), prober, Sample::default()));
+                probers.push((kernel.name(), prober, Timings::default()));
             }
             Err(Error::ArithmeticRefused { .. }) => {}
             Err(error) => return Err(error),
         }
     }
     for _ in 0..runs {
-        for (_, prober, sample) in &mut probers {
+        for (_, prober, timings) in &mut probers {
             let before = prober.busy();
             prober.ask(Question::Nearest, &batch)?;
-            sample.push(prober.busy().saturating_sub(before).as_secs_f64() * 1e9 / tests);
+            timings.push(prober.busy().saturating_sub(before).as_secs_f64() * 1e9 / tests);
         }
     }
     let base = probers.first().map_or(f64::NAN, |(.., sample)| sample.median());
     // By the name asked for: without f64 another kernel stands in for `double`.
-    let cost = |(kernel, _, ns): (&'static str, Prober, Sample)| Cost { kernel, ratio: ns.median() / base, ns };
+    let cost = |(kernel, _, ns): (&'static str, Prober, Timings)| Cost { kernel, ratio: ns.median() / base, ns };
     Ok(probers.into_iter().map(cost).collect())
 }

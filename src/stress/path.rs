@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use crate::cpu::oracle::{Body, Passage, quotient, truth_of};
+use crate::cpu::oracle::{GlassBody, Passage, quotient, truth_of};
 use crate::cpu::{Dd, Real, Vec3};
 use crate::gpu::Surface;
 
@@ -166,7 +166,7 @@ pub(super) fn follow(
 }
 
 /// What [`crate::cpu::oracle::refracted`] says too, by formulas of its own; the index of refraction is that of the first body.
-pub fn passage(origin: DVec3, direction: DVec3, bodies: &[Body], bounces: u32) -> Passage {
+pub fn passage(origin: DVec3, direction: DVec3, bodies: &[GlassBody], bounces: u32) -> Passage {
     let surfaces: Vec<_> = bodies.iter().map(|body| Surface { center: body.center, scale: body.scale }).collect();
     let eta = bodies.first().map_or(1.0, |body| body.eta);
     let ray = Ray { origin: Vec3::from_f64(origin), direction: Vec3::from_f64(direction) };

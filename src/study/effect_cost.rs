@@ -5,7 +5,8 @@ use serde::Serialize;
 use crate::effects::{Effect, EffectSet, Effects, Request};
 use crate::engine::{Backend, Engine, render_bands};
 use crate::gpu;
-use crate::report::Sample;
+use crate::hash::{EMPTY, fnv1a};
+use crate::report::Timings;
 use crate::scene::Scene;
 use crate::settings::Settings;
 
@@ -19,7 +20,7 @@ pub struct Variant {
     /// From shader text to a kernel that has run once, in ms; the driver may have had it in its cache. 0 on the CPU.
     pub compile_ms: f64,
     /// Render times of all runs.
-    pub render: Sample,
+    pub render: Timings,
     /// Median render time over that of `auto`.
     pub ratio: f64,
     /// Whether the picture is that of `auto`, byte for byte.
@@ -58,7 +59,7 @@ pub fn effect_cost(
         let compile_ms = engine.times().compile_ms;
         let same_picture = pictures.last() == pictures.first();
         let variant =
-            Variant { name, effects: effects.set, compile_ms, render: Sample::default(), ratio: 1.0, same_picture };
+            Variant { name, effects: effects.set, compile_ms, render: Timings::default(), ratio: 1.0, same_picture };
         engines.push((engine, variant));
     }
     for _ in 0..runs {
@@ -76,13 +77,11 @@ pub fn effect_cost(
     Ok(EffectCost { effects: auto, variants })
 }
 
-/// A fingerprint of the picture (FNV-1a), so that large ones need not be kept.
+/// A fingerprint of the picture, so that large ones need not be kept.
 fn picture_hash(engine: &mut Engine) -> Result<u64, gpu::Error> {
-    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    let mut hash = EMPTY;
     render_bands(engine, |band| {
-        for &byte in band.rgb {
-            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        }
+        hash = fnv1a(hash, band.rgb.iter().copied());
         Ok::<_, gpu::Error>(())
     })?;
     Ok(hash)

@@ -5,9 +5,9 @@ use std::fmt::Write as _;
 use maud::{Markup, html};
 use serde::Serialize;
 
-use super::measure::Skipped;
 use crate::gpu::{DeviceInfo, Error, Gpu, Kernel};
 use crate::precision::Tier;
+use crate::report::Skipped;
 use crate::report::number::short;
 use crate::report::svg::{Axis, Frame, drawing, px, x_axis, y_axis};
 use crate::stress::{Cost, Row, Verdict, classes, cost, run};

@@ -14,7 +14,7 @@ use crate::engine::Backend;
 use crate::film::Picture;
 use crate::gpu::{DeviceInfo, Gpu};
 use crate::precision::Selection;
-use crate::report::Sample;
+use crate::report::{Skipped, Timings};
 use crate::scene::Scene;
 use crate::settings::Settings;
 
@@ -23,7 +23,7 @@ const LEAST_RUNS: usize = 3;
 
 /// What to measure.
 #[derive(Debug, Clone)]
-pub struct Plan {
+pub struct StudyPlan {
     /// Counted runs of each point, after one warm-up.
     pub runs: usize,
     /// Time to spend on the counted runs of one series, in s; longer pictures get fewer runs.
@@ -34,7 +34,7 @@ pub struct Plan {
     pub sides: Vec<u32>,
 }
 
-impl Plan {
+impl StudyPlan {
     /// How many rounds of so many ms there is time for.
     pub(super) fn affordable(&self, round_ms: f64) -> usize {
         let affordable = (self.seconds * 1e3 / round_ms) as usize;
@@ -44,7 +44,7 @@ impl Plan {
 
 /// A scene and how to render it.
 #[derive(Clone, Copy)]
-pub struct Subject<'a> {
+pub struct StudyInput<'a> {
     /// Its name.
     pub name: &'a str,
     /// The scene.
@@ -96,15 +96,6 @@ pub struct Study {
     pub effect_cost: EffectCost,
 }
 
-/// A contestant that was not measured.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Skipped {
-    /// Its name.
-    pub name: String,
-    /// Why.
-    pub reason: String,
-}
-
 /// Points that were measured in turn: each once, then each once more, and so on.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Series {
@@ -136,9 +127,9 @@ pub struct Point {
     /// Samples per pixel.
     pub samples: u32,
     /// Times by the wall clock, from the prepared scene to rows in memory.
-    pub wall: Sample,
+    pub wall: Timings,
     /// Times of the dispatches by the device's own clock; `None` where there is none.
-    pub on_device: Option<Sample>,
+    pub on_device: Option<Timings>,
     /// Pixels that are not finite.
     pub not_finite: u64,
     /// Distance from the reference of the same depth and samples.
@@ -157,9 +148,9 @@ struct Exact {
 }
 
 impl Exact {
-    fn new(subject: &Subject, settings: &Settings) -> Result<Self, Error> {
-        let scene = subject.scene;
-        let reference = Reference::new(scene, settings, &(subject.effects)(settings));
+    fn new(input: &StudyInput, settings: &Settings) -> Result<Self, Error> {
+        let scene = input.scene;
+        let reference = Reference::new(scene, settings, &(input.effects)(settings));
         let linear = linear_colors(&reference, (scene.width, scene.height));
         let rgb = linear.iter().flat_map(|color| settings.quantize.levels(*color)).collect();
         Ok(Self { reference, linear, picture: Picture::new(scene.width, scene.height, rgb)? })
@@ -176,19 +167,19 @@ pub enum Event<'a> {
 }
 
 /// Measures everything that `plan` asks for.
-pub fn study(subject: &Subject, plan: &Plan) -> Result<Study, Error> {
-    watched(subject, plan, |_| ())
+pub fn study(input: &StudyInput, plan: &StudyPlan) -> Result<Study, Error> {
+    watched(input, plan, |_| ())
 }
 
 /// Likewise; `hear` hears of it.
-pub fn watched(subject: &Subject, plan: &Plan, mut hear: impl FnMut(Event)) -> Result<Study, Error> {
+pub fn watched(input: &StudyInput, plan: &StudyPlan, mut hear: impl FnMut(Event)) -> Result<Study, Error> {
     /// The series, sampling in part, and what effects cost.
     const PARTS: f64 = 5.0;
-    let Subject { scene, settings, gpu, selection, .. } = *subject;
+    let StudyInput { scene, settings, gpu, selection, .. } = *input;
     let base = Settings { ..*settings };
-    let effects = (subject.effects)(settings);
+    let effects = (input.effects)(settings);
     let mut study = Study {
-        scene: subject.name.to_owned(),
+        scene: input.name.to_owned(),
         width: scene.width,
         height: scene.height,
         spheres: scene.spheres.len(),
@@ -213,7 +204,7 @@ pub fn watched(subject: &Subject, plan: &Plan, mut hear: impl FnMut(Event)) -> R
             false
         }
     });
-    study.precision = series(subject, plan, &mut contestants, &mut study.skipped, &[base], None, |within| {
+    study.precision = series(input, plan, &mut contestants, &mut study.skipped, &[base], None, |within| {
         hear(Event::Done(within / PARTS));
     })?;
     hear(Event::Measured(&study));
@@ -223,20 +214,20 @@ pub fn watched(subject: &Subject, plan: &Plan, mut hear: impl FnMut(Event)) -> R
     let at_depth = |max_depth| Settings { max_depth, ..base };
     let deeper = at_depth((depths.iter().max().copied().unwrap_or(0) * 2).clamp(8, Settings::MAX_DEPTH));
     let variants: Vec<_> = depths.iter().map(|&depth| at_depth(depth)).collect();
-    study.depth = series(subject, plan, &mut contestants, &mut study.skipped, &variants, Some(deeper), |within| {
+    study.depth = series(input, plan, &mut contestants, &mut study.skipped, &variants, Some(deeper), |within| {
         hear(Event::Done((1.0 + within) / PARTS));
     })?;
     hear(Event::Measured(&study));
 
-    let with_side = |samples| Settings { samples, ..base };
-    let finer = with_side((plan.sides.iter().max().copied().unwrap_or(1) * 2).min(Settings::MAX_SAMPLES));
+    let with_side = |samples| Settings { samples_per_side: samples, ..base };
+    let finer = with_side((plan.sides.iter().max().copied().unwrap_or(1) * 2).min(Settings::MAX_SAMPLES_PER_SIDE));
     let variants: Vec<_> = plan.sides.iter().map(|&side| with_side(side)).collect();
-    study.samples = series(subject, plan, &mut contestants, &mut study.skipped, &variants, Some(finer), |within| {
+    study.samples = series(input, plan, &mut contestants, &mut study.skipped, &variants, Some(finer), |within| {
         hear(Event::Done((2.0 + within) / PARTS));
     })?;
     hear(Event::Measured(&study));
 
-    study.partial = partial_series(subject, plan)?;
+    study.partial = partial_series(input, plan)?;
     hear(Event::Measured(&study));
     hear(Event::Done(4.0 / PARTS));
 
@@ -245,7 +236,7 @@ pub fn watched(subject: &Subject, plan: &Plan, mut hear: impl FnMut(Event)) -> R
     let one_ms =
         study.precision.points.iter().find(|point| point.contestant == main).map_or(0.0, |point| point.wall.median());
     let variants_ms = one_ms * (Effect::ALL.len() + 2) as f64;
-    let backend = gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, selection.tier));
+    let backend = Backend::of(gpu, selection.tier);
     study.effect_cost = effect_cost(backend, scene, settings, plan.affordable(variants_ms))?;
     hear(Event::Measured(&study));
     Ok(study)
@@ -253,23 +244,23 @@ pub fn watched(subject: &Subject, plan: &Plan, mut hear: impl FnMut(Event)) -> R
 
 /// Measures `contestants` under each of `variants`; one that the device refuses is skipped from then on.
 fn series(
-    subject: &Subject,
-    plan: &Plan,
+    input: &StudyInput,
+    plan: &StudyPlan,
     contestants: &mut Vec<Contestant>,
     skipped: &mut Vec<Skipped>,
     variants: &[Settings],
     truth: Option<Settings>,
     mut done: impl FnMut(f64),
 ) -> Result<Series, Error> {
-    let truth = truth.map(|settings| Ok::<_, Error>((settings, Exact::new(subject, &settings)?))).transpose()?;
+    let truth = truth.map(|settings| Ok::<_, Error>((settings, Exact::new(input, &settings)?))).transpose()?;
     let mut measured = Vec::new();
     let mut round_ms = 0.0;
     for (index, settings) in variants.iter().enumerate() {
         // The first half is to prepare, and to compare pictures.
         done(0.5 * index as f64 / variants.len() as f64);
-        let exact = Exact::new(subject, settings)?;
+        let exact = Exact::new(input, settings)?;
         for contestant in contestants.clone() {
-            match warm_up(subject, contestant, settings, &exact, truth.as_ref().map(|(_, truth)| truth)) {
+            match warm_up(input, contestant, settings, &exact, truth.as_ref().map(|(_, truth)| truth)) {
                 Ok((runner, point, ms)) => {
                     measured.push((runner, point));
                     round_ms += ms;
@@ -295,21 +286,22 @@ fn series(
     }
     Ok(Series {
         runs,
-        truth: truth.map(|(settings, _)| Truth { depth: settings.max_depth, samples: settings.samples.pow(2) }),
+        truth: truth
+            .map(|(settings, _)| Truth { depth: settings.max_depth, samples: settings.samples_per_side.pow(2) }),
         points: measured.into_iter().map(|(_, point)| point).collect(),
     })
 }
 
 /// Renders once and compares; returns the renderer, the point without times, and the time of the next run, about, in ms.
 fn warm_up<'a>(
-    subject: &Subject<'a>,
+    input: &StudyInput<'a>,
     contestant: Contestant,
     settings: &Settings,
     exact: &Exact,
     truth: Option<&Exact>,
 ) -> Result<(Runner<'a>, Point, f64), Error> {
-    let Subject { scene, gpu, .. } = *subject;
-    let effects = (subject.effects)(settings);
+    let StudyInput { scene, gpu, .. } = *input;
+    let effects = (input.effects)(settings);
     let mut runner = Runner::new(contestant, gpu, scene, settings, &effects)?;
     let run = runner.run()?;
     let linear = match contestant {
@@ -330,9 +322,9 @@ fn warm_up<'a>(
     let point = Point {
         contestant,
         depth: settings.max_depth,
-        samples: settings.samples.pow(2),
-        wall: Sample::default(),
-        on_device: run.device_ms.map(|_| Sample::default()),
+        samples: settings.samples_per_side.pow(2),
+        wall: Timings::default(),
+        on_device: run.device_ms.map(|_| Timings::default()),
         not_finite: run.not_finite,
         error,
         unexplained: explanation.unexplained,

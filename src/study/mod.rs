@@ -11,12 +11,12 @@ mod sampling;
 mod sampling_report;
 mod table;
 
-pub use crate::report::Sample;
+pub use crate::report::{Skipped, Timings};
 pub use contestant::Contestant;
 pub use effect_cost::{EffectCost, Variant, effect_cost};
 pub use error::{Distance, Error};
 pub use hard_cases::{HardCases, hard_cases};
-pub use measure::{Event, Plan, Point, Series, Skipped, Study, Subject, Truth, study, watched};
+pub use measure::{Event, Point, Series, Study, StudyInput, StudyPlan, Truth, study, watched};
 pub use report::html;
 pub use sampling::{Manner, PartialPoint, PartialSeries};
 pub use table::{COLUMNS, csv};

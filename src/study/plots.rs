@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use super::contestant::Contestant;
 use super::measure::{Point, Series, Study};
 use crate::precision::Tier;
-use crate::report::Sample;
+use crate::report::Timings;
 use crate::report::number::{ppm, short, time};
 use crate::report::svg::{Axis, Frame, Rect, drawing, place_labels, px, spread, x_axis, y_axis};
 
@@ -20,7 +20,7 @@ pub(super) fn class(contestant: Contestant) -> &'static str {
     }
 }
 
-fn extent(samples: &[&Sample]) -> Vec<f64> {
+fn extent(samples: &[&Timings]) -> Vec<f64> {
     samples.iter().flat_map(|sample| [sample.min(), sample.median(), sample.max()]).collect()
 }
 
@@ -79,7 +79,7 @@ pub(super) fn pareto(study: &Study) -> Markup {
 }
 
 /// A value, and the least and greatest of it.
-type Reading = (f64, [f64; 2]);
+type Ranged = (f64, [f64; 2]);
 
 /// One line of a plot over steps.
 struct Line<'a> {
@@ -136,7 +136,7 @@ pub(super) fn over(series: &Series, what: &str, step: impl Fn(&Point) -> u32) ->
     let place = |point: &Point| values.iter().position(|value| *value == step(point)).unwrap_or(0);
     let mut of_contestants = Contestant::ALL.to_vec();
     of_contestants.retain(|contestant| series.points.iter().any(|point| point.contestant == *contestant));
-    let line = |contestant: &Contestant, read: &dyn Fn(&Point) -> Option<Reading>| {
+    let line = |contestant: &Contestant, read: &dyn Fn(&Point) -> Option<Ranged>| {
         let own = series.points.iter().filter(|point| point.contestant == *contestant);
         let mut points: Vec<_> =
             own.filter_map(|point| read(point).map(|(value, ends)| (place(point), value, ends))).collect();

@@ -8,7 +8,7 @@ use super::hard_cases::HardCases;
 use super::measure::{Point, Series, Study};
 use super::plots;
 use crate::report::number::{ppm, short, time};
-use crate::settings::{Sampling, Settings};
+use crate::settings::{SampleOffset, Settings};
 use crate::view::View;
 use crate::words::count;
 
@@ -80,7 +80,7 @@ fn section(study: &Study) -> Markup {
         }
         p.small {
             (truth(samples))
-            @if study.settings.sampling != Sampling::Center {
+            @if study.settings.sampling != SampleOffset::Center {
                 " With this convention samples start at the pixel's corner, so the picture also moves by up to half a pixel \
                  as samples are added, and the error contains that shift; " code { "--convention exact" } " has none."
             }
@@ -116,7 +116,7 @@ fn word(choice: &impl serde::Serialize) -> String {
 }
 
 fn facts(study: &Study) -> Markup {
-    let Settings { view, sampling, quantize, secondary, specular, max_depth, samples } = study.settings;
+    let Settings { view, sampling, quantize, secondary, specular, max_depth, samples_per_side } = study.settings;
     html! {
         dl {
             dt { "Picture" }
@@ -136,7 +136,7 @@ fn facts(study: &Study) -> Markup {
             dd {
                 (word(&sampling)) " sampling, quantize " (word(&quantize)) ", secondary epsilon "
                 (secondary.shadow) " for shadows and " (secondary.reflection) " for reflections, "
-                (word(&specular)) ", depth " (max_depth) ", " (samples * samples) " spp"
+                (word(&specular)) ", depth " (max_depth) ", " (samples_per_side.pow(2)) " spp"
             }
             dt { "Tier for it" }
             dd { (study.selection.tier) ": " (study.selection.reason) }
@@ -219,7 +219,7 @@ fn table(series: &Series) -> Markup {
                 td { (point.samples) }
                 td { (time(point.wall.median())) }
                 td { (short(point.wall.min())) " … " (short(point.wall.max())) }
-                @if clock { td { (cell(point.on_device.as_ref().map(crate::report::Sample::median))) } }
+                @if clock { td { (cell(point.on_device.as_ref().map(crate::report::Timings::median))) } }
                 td { (point.error.differing) }
                 td { (point.unexplained) }
                 @if varied { td { (distance.differing) } }

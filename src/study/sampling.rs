@@ -5,10 +5,10 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::error::{Distance, Error};
-use super::measure::{Plan, Subject};
+use super::measure::{StudyInput, StudyPlan};
 use crate::engine::{Backend, Engine, Filler, Options, Pixels, render_picture};
 use crate::gpu;
-use crate::report::Sample;
+use crate::report::Timings;
 use crate::sampling::{Density, Fill, Fovea, Samples};
 
 /// Densities of the sparse pictures, and the least ones of the foveated pictures.
@@ -51,9 +51,9 @@ pub struct PartialPoint {
     /// Sampled pixels.
     pub pixels: u64,
     /// Times by the wall clock: rays and filling.
-    pub wall: Sample,
+    pub wall: Timings,
     /// Times of the rays alone.
-    pub rays: Sample,
+    pub rays: Timings,
     /// Distance from the full picture of the same renderer.
     pub error: Distance,
     /// The same of the pixels within the fovea.
@@ -104,10 +104,10 @@ impl Runner<'_> {
 }
 
 /// Measures the full picture, sparse ones and foveated ones.
-pub(super) fn partial_series(subject: &Subject, plan: &Plan) -> Result<PartialSeries, Error> {
-    let Subject { scene, settings, gpu, selection, .. } = *subject;
-    let backend = gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, selection.tier));
-    let effects = (subject.effects)(settings);
+pub(super) fn partial_series(input: &StudyInput, plan: &StudyPlan) -> Result<PartialSeries, Error> {
+    let StudyInput { scene, settings, gpu, selection, .. } = *input;
+    let backend = Backend::of(gpu, selection.tier);
+    let effects = (input.effects)(settings);
     let size = (scene.width, scene.height);
     let mut series = PartialSeries::none(size);
     let fovea = series.fovea;
@@ -142,8 +142,8 @@ pub(super) fn partial_series(subject: &Subject, plan: &Plan) -> Result<PartialSe
         least: 1.0,
         fill: Fill::Nearest,
         pixels,
-        wall: Sample::default(),
-        rays: Sample::default(),
+        wall: Timings::default(),
+        rays: Timings::default(),
         error: same,
         inside: same,
         outside: same,
@@ -190,8 +190,8 @@ fn point(
         least,
         fill,
         pixels: samples.pixels().len() as u64,
-        wall: Sample::default(),
-        rays: Sample::default(),
+        wall: Timings::default(),
+        rays: Timings::default(),
         error: Distance::between(rgb, truth),
         inside: part(true),
         outside: part(false),

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use super::error::Distance;
 use super::measure::{Point, Series, Study};
 use super::sampling::PartialPoint;
-use crate::report::Sample;
+use crate::report::Timings;
 use crate::report::csv::record;
 use crate::report::number::{short, time};
 use crate::settings::Settings;
@@ -145,7 +145,7 @@ pub fn csv(studies: &[Study]) -> String {
                 "effects".to_owned(),
                 variant.name.clone(),
                 study.settings.max_depth.to_string(),
-                study.settings.samples.pow(2).to_string(),
+                study.settings.samples_per_side.pow(2).to_string(),
             ];
             fields.extend(times(&variant.render));
             fields.extend(std::iter::repeat_n(String::new(), 13));
@@ -161,7 +161,7 @@ pub fn csv(studies: &[Study]) -> String {
     text
 }
 
-fn times(sample: &Sample) -> [String; 5] {
+fn times(sample: &Timings) -> [String; 5] {
     [
         sample.runs().len().to_string(),
         sample.median().to_string(),
@@ -171,7 +171,7 @@ fn times(sample: &Sample) -> [String; 5] {
     ]
 }
 
-fn runs(sample: &Sample) -> String {
+fn runs(sample: &Timings) -> String {
     sample.runs().iter().map(ToString::to_string).collect::<Vec<_>>().join(" ")
 }
 
@@ -182,7 +182,7 @@ fn fields(name: &str, series: &Series, point: &Point) -> Vec<String> {
         vec![name.to_owned(), point.contestant.name().to_owned(), point.depth.to_string(), point.samples.to_string()];
     fields.extend(times(&point.wall));
     fields.extend([
-        optional(point.on_device.as_ref().map(Sample::median)),
+        optional(point.on_device.as_ref().map(Timings::median)),
         point.error.differing.to_string(),
         point.error.max_level.to_string(),
         point.error.mean_level.to_string(),
@@ -202,8 +202,9 @@ fn fields(name: &str, series: &Series, point: &Point) -> Vec<String> {
 }
 
 fn partial_fields(study: &Study, point: &PartialPoint) -> Vec<String> {
-    let Settings { max_depth, samples, .. } = study.settings;
-    let mut fields = vec!["partial".to_owned(), point.name(), max_depth.to_string(), samples.pow(2).to_string()];
+    let Settings { max_depth, samples_per_side, .. } = study.settings;
+    let mut fields =
+        vec!["partial".to_owned(), point.name(), max_depth.to_string(), samples_per_side.pow(2).to_string()];
     fields.extend(times(&point.wall));
     let Distance { differing, max_level, mean_level, rms_level, .. } = point.error;
     fields.extend([String::new(), differing.to_string(), max_level.to_string(), mean_level.to_string()]);

@@ -1,14 +1,14 @@
 //! What is tuned to a class of devices: the one place for the numbers that decide how soon a picture is there, and never
 //! what it shows.
 
-mod kept;
 mod knobs;
+mod stored;
 
 use serde::{Deserialize, Serialize};
 
 use crate::accel::Density;
-pub use kept::{IGNORE, Kept, Source, load, save};
 pub use knobs::{KNOBS, Knob};
+pub use stored::{IGNORE, Source, StoredTuning, load, save};
 
 /// The numbers. Every combination within the limits of [`KNOBS`] gives the same picture, byte for byte.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -1,6 +1,6 @@
 //! What a page shows, so that it is sent only what has changed.
 
-use super::protocol::{Patch, Rectangle};
+use super::patch::{Patch, Rectangle};
 use crate::tiles::TILE;
 
 /// The picture of one page in full resolution, as far as the page has it.

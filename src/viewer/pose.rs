@@ -24,13 +24,13 @@ pub struct Pose {
 
 /// How far away the spheres of a scene are: what the steps of a flight are measured in.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Range {
+pub struct FlightScale {
     /// From the file's eye to the middle of the spheres along the view, in world units, > 0.
     pub distance: f64,
 }
 
-impl Range {
-    /// The range of `scene`.
+impl FlightScale {
+    /// That of `scene`.
     pub fn of(scene: &Scene) -> Self {
         let depths = scene.spheres.iter().map(|sphere| -sphere.center.z);
         let (low, high) = depths.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), z| (l.min(z), h.max(z)));
@@ -44,14 +44,14 @@ impl Range {
 
 impl Pose {
     /// The file's camera; it orbits around the middle of the view at the distance of the spheres.
-    pub fn of_file(range: Range) -> Self {
-        Self { eye: DVec3::ZERO, look_at: DVec3::new(0.0, 0.0, -range.distance), up: DVec3::Y }
+    pub fn of_file(scale: FlightScale) -> Self {
+        Self { eye: DVec3::ZERO, look_at: DVec3::new(0.0, 0.0, -scale.distance), up: DVec3::Y }
     }
 
     /// An eye that looks along −z, at what is as far away as the spheres are from the file's eye.
-    pub fn ahead(eye: DVec3, up: DVec3, range: Range) -> Self {
+    pub fn ahead(eye: DVec3, up: DVec3, scale: FlightScale) -> Self {
         // So near to an eye that is far away, there may be no other number.
-        let distance = range.distance.max(1e-6 * eye.z.abs());
+        let distance = scale.distance.max(1e-6 * eye.z.abs());
         Self { eye, look_at: eye - DVec3::Z * distance, up }
     }
 
@@ -88,20 +88,20 @@ impl Pose {
         self.accepted(Self { look_at: self.eye + ahead, ..self })
     }
 
-    /// Moves eye and target along the picture's axes, in parts of `range`.
+    /// Moves eye and target along the picture's axes, in parts of `scale`.
     #[must_use]
-    pub fn flown(self, right: f64, up: f64, forward: f64, range: Range) -> Self {
+    pub fn flown(self, right: f64, up: f64, forward: f64, scale: FlightScale) -> Self {
         let Ok(view) = self.view() else { return self };
         let [x, y, back] = view.axes();
-        let step = (x * right + y * up - back * forward) * range.distance;
+        let step = (x * right + y * up - back * forward) * scale.distance;
         self.accepted(Self { eye: self.eye + step, look_at: self.look_at + step, ..self })
     }
 
     /// Multiplies the distance to what it looks at by `factor`.
     #[must_use]
-    pub fn zoomed(self, factor: f64, range: Range) -> Self {
+    pub fn zoomed(self, factor: f64, scale: FlightScale) -> Self {
         let (arm, unit) = in_unit(self.eye - self.look_at);
-        let length = (arm.length() * factor * unit).clamp(range.distance * 1e-4, range.distance * 1e4);
+        let length = (arm.length() * factor * unit).clamp(scale.distance * 1e-4, scale.distance * 1e4);
         self.accepted(Self { eye: self.look_at + arm.normalize_or_zero() * length, ..self })
     }
 

@@ -1,4 +1,4 @@
-//! HTTP and WebSocket: the page, and the way between a page and its desk.
+//! HTTP and WebSocket: the page, and the way between a page and its session.
 
 use std::collections::VecDeque;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
@@ -20,8 +20,8 @@ use tokio::net::{TcpListener, TcpStream};
 use tokio::task::AbortHandle;
 use tokio::time::{Instant, interval, sleep, timeout};
 
-use super::desk::{Desk, Outgoing};
-use super::studio::Studio;
+use super::render_loop::RenderLoop;
+use super::session::{Outgoing, Session};
 
 const PAGE: &str = include_str!("page.html");
 /// What the page may do: nothing but what is in it, and its own WebSocket.
@@ -33,20 +33,20 @@ static POLICY: LazyLock<String> = LazyLock::new(|| {
     )
 });
 /// Connections at once whose request is not answered yet, whoever they are from; one more ends the oldest of them.
-const MAX_VISITORS: usize = 64;
-/// So long a request and its answer may take. A WebSocket is no visit any more: it has limits of its own.
-const VISIT: Duration = Duration::from_secs(10);
+const MAX_PENDING: usize = 64;
+/// So long a request and its answer may take. A WebSocket has limits of its own.
+const REQUEST_TIMEOUT: Duration = Duration::from_secs(10);
 /// Bytes of the head of a request at the most.
 const MAX_HEAD: usize = 16 << 10;
 /// Where the system has no room for another connection, one may go meanwhile.
-const FULL: Duration = Duration::from_millis(50);
+const ACCEPT_RETRY: Duration = Duration::from_millis(50);
 /// Bytes of a message from a page at the most.
 const MAX_MESSAGE: usize = 16 << 10;
 /// A page from which nothing comes for so long, not even an answer to a ping, is gone.
-const SILENCE: Duration = Duration::from_secs(30);
+const IDLE_TIMEOUT: Duration = Duration::from_secs(30);
 const PING: Duration = Duration::from_secs(5);
 /// A message that does not get out for so long has nobody to go to.
-const STUCK: Duration = Duration::from_secs(30);
+const SEND_TIMEOUT: Duration = Duration::from_secs(30);
 
 /// Who may come in.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -98,7 +98,7 @@ pub struct Server {
 
 #[derive(Debug, Clone)]
 struct Shared {
-    studio: Arc<Studio>,
+    render_loop: Arc<RenderLoop>,
     access: Access,
 }
 
@@ -127,14 +127,14 @@ impl Server {
     /// # Errors
     ///
     /// Whatever the system says.
-    pub fn serve(self, studio: Arc<Studio>) -> std::io::Result<()> {
+    pub fn serve(self, render_loop: Arc<RenderLoop>) -> std::io::Result<()> {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
         runtime.block_on(async {
             let listener = TcpListener::from_std(self.listener)?;
-            let shared = Shared { studio, access: self.access };
+            let shared = Shared { render_loop, access: self.access };
             let router =
                 Router::new().route("/{token}/", get(page)).route("/{token}/ws", get(connect)).with_state(shared);
-            receive(listener, router).await;
+            accept(listener, router).await;
             Ok(())
         })
     }
@@ -164,32 +164,32 @@ fn reachable(ip: IpAddr) -> IpAddr {
     own().map(|own| own.ip()).ok().filter(|own| !own.is_unspecified()).unwrap_or(alone)
 }
 
-/// Lets visitors in, for ever. Strangers can always come, and neither hold a place for long nor keep others out.
-async fn receive(listener: TcpListener, router: Router) {
-    let mut visitors: VecDeque<AbortHandle> = VecDeque::new();
+/// Accepts connections, for ever. Strangers can always connect, and neither hold a connection for long nor keep others out.
+async fn accept(listener: TcpListener, router: Router) {
+    let mut pending: VecDeque<AbortHandle> = VecDeque::new();
     loop {
         let Ok((stream, _)) = listener.accept().await else {
-            sleep(FULL).await;
+            sleep(ACCEPT_RETRY).await;
             continue;
         };
-        visitors.retain(|visitor| !visitor.is_finished());
-        if visitors.len() == MAX_VISITORS
-            && let Some(oldest) = visitors.pop_front()
+        pending.retain(|task| !task.is_finished());
+        if pending.len() == MAX_PENDING
+            && let Some(oldest) = pending.pop_front()
         {
             oldest.abort();
         }
-        visitors.push_back(tokio::spawn(visit(stream, router.clone())).abort_handle());
+        pending.push_back(tokio::spawn(answer(stream, router.clone())).abort_handle());
     }
 }
 
 /// Answers one connection.
-async fn visit(stream: TcpStream, router: Router) {
+async fn answer(stream: TcpStream, router: Router) {
     let service = TowerToHyperService::new(router);
     let mut http = http1::Builder::new();
     http.max_buf_size(MAX_HEAD);
     let connection = http.serve_connection(TokioIo::new(stream), service).with_upgrades();
     // Whoever breaks off or is too slow has had enough.
-    let _ = timeout(VISIT, connection).await;
+    let _ = timeout(REQUEST_TIMEOUT, connection).await;
 }
 
 async fn page(State(shared): State<Shared>, Path(token): Path<String>, headers: HeaderMap) -> Response {
@@ -214,28 +214,28 @@ async fn connect(
     if !shared.access.permits_request(&token, &headers, true) {
         return StatusCode::FORBIDDEN.into_response();
     }
-    let Some(desk) = shared.studio.sit_down() else {
+    let Some(session) = shared.render_loop.connect() else {
         return (StatusCode::SERVICE_UNAVAILABLE, "too many pages are open").into_response();
     };
-    let seat = Seat { desk, studio: shared.studio };
-    upgrade.max_message_size(MAX_MESSAGE).max_frame_size(MAX_MESSAGE).on_upgrade(|socket| converse(socket, seat))
+    let connection = Connection { session, render_loop: shared.render_loop };
+    upgrade.max_message_size(MAX_MESSAGE).max_frame_size(MAX_MESSAGE).on_upgrade(|socket| exchange(socket, connection))
 }
 
-/// A desk that is left when the connection ends, however it ends.
-struct Seat {
-    desk: Arc<Desk>,
-    studio: Arc<Studio>,
+/// Closes the session when the connection ends, however it ends.
+struct Connection {
+    session: Arc<Session>,
+    render_loop: Arc<RenderLoop>,
 }
 
-impl Drop for Seat {
+impl Drop for Connection {
     fn drop(&mut self) {
-        self.desk.close();
-        self.studio.bell.ring();
+        self.session.close();
+        self.render_loop.wake.raise();
     }
 }
 
 /// Carries messages both ways until the page is gone.
-async fn converse(mut socket: WebSocket, seat: Seat) {
+async fn exchange(mut socket: WebSocket, connection: Connection) {
     let mut ping = interval(PING);
     let mut heard = Instant::now();
     loop {
@@ -245,24 +245,24 @@ async fn converse(mut socket: WebSocket, seat: Seat) {
                 heard = Instant::now();
                 if let Message::Text(text) = message {
                     // What is no message is of another page than ours.
-                    let Ok(message) = serde_json::from_str(&text) else { return };
-                    seat.desk.receive(&message);
-                    seat.studio.bell.ring();
+                    let Ok(request) = serde_json::from_str(&text) else { return };
+                    connection.session.receive(&request);
+                    connection.render_loop.wake.raise();
                 }
                 continue;
             }
-            message = seat.desk.taken() => match message {
+            message = connection.session.taken() => match message {
                 Outgoing::Bytes(bytes) => Message::Binary(bytes.into()),
-                Outgoing::Words(words) => Message::Text(words.into()),
+                Outgoing::Text(text) => Message::Text(text.into()),
             },
             _ = ping.tick() => {
-                if heard.elapsed() > SILENCE {
+                if heard.elapsed() > IDLE_TIMEOUT {
                     return;
                 }
                 Message::Ping(Vec::new().into())
             }
         };
-        if !matches!(timeout(STUCK, socket.send(outgoing)).await, Ok(Ok(()))) {
+        if !matches!(timeout(SEND_TIMEOUT, socket.send(outgoing)).await, Ok(Ok(()))) {
             return;
         }
     }

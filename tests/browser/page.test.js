@@ -105,7 +105,7 @@ test('toggles change the picture as the options of render do', async () => {
   await page.locator('#depth').fill('1');
   await page.locator('#res').fill('150x90');
   await page.keyboard.press('Enter');
-  state = await settled(page, (state) => state.size[0] === 150 && state.wishes.max_depth === 1 && state.samples === 4);
+  state = await settled(page, (state) => state.size[0] === 150 && state.controls.max_depth === 1 && state.samples === 4);
   for (const option of ['--convention exact', '--precision double', '--spp 4', '--max-depth 1', '--res 150x90']) {
     assert.ok(state.options.includes(option), `${option} in ${state.options}`);
   }
@@ -201,11 +201,11 @@ test('a moving picture has fewer samples, or fewer pixels, and at rest it is tha
   };
   const box = await page.locator('#picture').boundingBox();
   await page.mouse.move(box.x + box.width / 4, box.y + box.height / 2);
-  await move('ArrowLeft', () => window.trueray.sketches > 2 && window.trueray.state.sampled?.density.fovea?.center[0] === 450);
+  await move('ArrowLeft', () => window.trueray.sampled > 2 && window.trueray.state.sampled?.density.fovea?.center[0] === 450);
   assert.match(await page.locator('#shown').textContent(), /the full picture/);
-  await page.locator('#economy').selectOption('sparse');
+  await page.locator('#mode').selectOption('sparse');
   await page.locator('#least').selectOption('0.0625');
   await move('ArrowRight', () => window.trueray.state.sampled && !window.trueray.state.sampled.density.fovea);
-  await page.locator('#economy').selectOption('coarse');
+  await page.locator('#mode').selectOption('coarse');
   await move('ArrowUp', () => window.trueray.state.step > 1);
 });

@@ -4,7 +4,8 @@ use std::process::{Command, Output, Stdio};
 
 use glam::DVec3;
 use trueray::bench::{
-    Axis, Bench, FAMILIES, Family, Plan, Renderer, STAGES, Subject, bench, csv, csv_columns, growth_exponent, html,
+    Axis, Bench, BenchPlan, FAMILIES, Family, PHASES, RenderSetup, Renderer, bench, csv, csv_columns, growth_exponent,
+    html,
 };
 use trueray::cpu::Reference;
 use trueray::effects::{Effect, EffectSet, Effects, Request};
@@ -144,7 +145,7 @@ fn exponents_of_known_laws() {
 
 fn measure(gpu: Option<&Gpu>, families: &[&str], seconds: f64) -> Bench {
     let settings = Settings::classic();
-    let subject = Subject {
+    let setup = RenderSetup {
         gpu,
         settings: &settings,
         resolution: Some((32, 18)),
@@ -152,16 +153,16 @@ fn measure(gpu: Option<&Gpu>, families: &[&str], seconds: f64) -> Bench {
         selection: &|scene, effects| Selection::of(scene, &settings, effects, precision::Request(None), &Tier::ALL),
     };
     let families = families.iter().map(|name| family(name)).collect();
-    let plan = Plan { families, max_spheres: 100, runs: 2, seconds, cpu: true };
+    let plan = BenchPlan { families, max_spheres: 100, runs: 2, seconds, cpu: true };
     let mut scenes = 0;
-    let result = bench(&subject, &plan, |_, _| scenes += 1).unwrap();
+    let result = bench(&setup, &plan, |_, _| scenes += 1).unwrap();
     assert_eq!(scenes, result.families.iter().map(|family| family.scenes.len()).sum::<usize>());
     result
 }
 
 #[test]
-fn every_scene_and_stage_is_measured_on_both() {
-    let Some(gpu) = gpu("every_scene_and_stage_is_measured_on_both") else { return };
+fn every_scene_and_phase_is_measured_on_both() {
+    let Some(gpu) = gpu("every_scene_and_phase_is_measured_on_both") else { return };
     let result = measure(Some(&gpu), &["spheres"], 600.0);
     let family = &result.families[0];
     assert_eq!(family.scenes.iter().map(|scene| scene.size).collect::<Vec<_>>(), [10, 100]);
@@ -173,8 +174,8 @@ fn every_scene_and_stage_is_measured_on_both() {
         assert!(scene.differing.unwrap() < 32 * 18 / 10);
         for measured in &scene.measured {
             assert_eq!(measured.picture.runs().len(), 2);
-            assert_eq!(measured.stages.len(), STAGES.len());
-            assert!(measured.stages.iter().all(|stage| stage.times.runs().len() == 2));
+            assert_eq!(measured.phases.len(), PHASES.len());
+            assert!(measured.phases.iter().all(|phase| phase.times.runs().len() == 2));
             assert!(measured.rays.primary > 0 && measured.rays.shadow > 0 && measured.rays.reflection > 0);
             assert!(measured.rays_per_second > 0.0);
         }
@@ -210,7 +211,7 @@ fn files_are_well_formed() {
         assert_eq!(line.matches(',').count() + 1, csv_columns().len(), "{line}"); // nothing here needs quotes
     }
     let json: serde_json::Value = serde_json::to_value(&result).unwrap();
-    assert_eq!(json["families"][1]["scenes"][1]["measured"][0]["stages"][0]["name"], "prepare");
+    assert_eq!(json["families"][1]["scenes"][1]["measured"][0]["phases"][0]["name"], "prepare");
     let page = html(&result, "trueray bench 'a <b>'");
     // One scene makes no plot.
     assert_eq!((page.matches("<svg").count(), page.matches("</svg>").count()), (2, 2));

@@ -14,7 +14,7 @@ use trueray::engine::Backend;
 use trueray::film::Picture;
 use trueray::precision::Tier;
 use trueray::scene::Scene;
-use trueray::settings::{Sampling, Settings};
+use trueray::settings::{SampleOffset, Settings};
 use trueray::view::{View, ViewError};
 
 use crate::support::{cpu_picture, gpu, gpu_picture, scene_of};
@@ -201,7 +201,7 @@ proptest! {
         size in [0.1..3.0, 0.1..3.0],
         flip in any::<[bool; 2]>(),
         (width, height) in (1_u32..200, 1_u32..150),
-        sampling in prop::sample::select(vec![Sampling::Corner, Sampling::BottomLeft, Sampling::Center]),
+        sampling in prop::sample::select(vec![SampleOffset::Corner, SampleOffset::BottomLeft, SampleOffset::Center]),
         samples in 1_u32..4,
         longest_tile in prop::sample::select(vec![0.0, 1.0, 1e9]),
         near in prop::sample::select(vec![1e-3, 0.1, 1.0, 2.0]),
@@ -219,7 +219,7 @@ proptest! {
         let side = |low: f64, size: f64, flip| if flip { (low + size, low) } else { (low, low + size) };
         (scene.window.left, scene.window.right) = side(window[0], size[0], flip[0]);
         (scene.window.bottom, scene.window.top) = side(window[1], size[1], flip[1]);
-        let settings = Settings { sampling, samples, view, ..Settings::classic() };
+        let settings = Settings { sampling, samples_per_side: samples, view, ..Settings::classic() };
         let density = Density { longest_tile, ..Density::DEFAULT };
         let camera = Camera::new(&scene, &settings);
 

@@ -11,9 +11,9 @@ const SCENE: &str = "NEAR 1\nLEFT -1\nRIGHT 1\nBOTTOM -1\nTOP 1\nRES 16 8\nSPHER
                      AMBIENT 1 1 1\nBACK 0 0 1\nOUTPUT out.ppm\n";
 
 /// A folder with `scene.txt` in it, where the program runs.
-struct Place(TempDir);
+struct Folder(TempDir);
 
-impl Place {
+impl Folder {
     fn new(scene: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("scene.txt"), scene).unwrap();
@@ -62,7 +62,7 @@ fn assert_exit(output: &Output, code: i32, message: &str) {
 
 #[test]
 fn one_argument_writes_output_into_the_working_directory() {
-    let place = Place::new(SCENE);
+    let place = Folder::new(SCENE);
     let folder = tempfile::tempdir().unwrap();
     let scene = place.path().join("scene.txt");
     let mut command = Command::new(env!("CARGO_BIN_EXE_trueray"));
@@ -76,14 +76,14 @@ fn one_argument_writes_output_into_the_working_directory() {
 
 #[test]
 fn without_output_the_scene_names_the_picture() {
-    let place = Place::new(&SCENE.replace("OUTPUT out.ppm\n", ""));
+    let place = Folder::new(&SCENE.replace("OUTPUT out.ppm\n", ""));
     assert_exit(&place.run("render --device cpu scene.txt"), 0, "scene.ppm");
     assert_eq!(place.files(), ["scene.ppm", "scene.txt"]);
 }
 
 #[test]
 fn renders_without_a_driver_on_the_reference_and_says_so() {
-    let place = Place::new(SCENE);
+    let place = Folder::new(SCENE);
     let output = place.run_without_driver("scene.txt");
     assert_exit(&output, 0, "rendering on the CPU reference: no Vulkan device");
     // Why there is none: the one driver that was asked for is not there.
@@ -94,7 +94,7 @@ fn renders_without_a_driver_on_the_reference_and_says_so() {
 
 #[test]
 fn a_required_device_never_falls_back() {
-    let place = Place::new(SCENE);
+    let place = Folder::new(SCENE);
     assert_exit(&place.run_without_driver("render --device gpu scene.txt"), 4, "no-driver.json");
     assert_exit(&place.run_without_driver("render --device 0 scene.txt"), 4, "no-driver.json");
     assert_exit(&place.run_without_driver("devices"), 4, "`--device cpu` renders without any");
@@ -104,7 +104,7 @@ fn a_required_device_never_falls_back() {
 #[test]
 fn a_device_that_is_not_there_lists_those_that_are() {
     let Some(gpu) = gpu("a_device_that_is_not_there_lists_those_that_are") else { return };
-    let place = Place::new(SCENE);
+    let place = Folder::new(SCENE);
     let name = &gpu.device.info.name;
     for arguments in ["render --device 99 scene.txt", "render --device no-such-device scene.txt"] {
         let output = place.run(arguments);
@@ -127,7 +127,7 @@ fn a_device_that_is_not_there_lists_those_that_are() {
 #[test]
 fn cpu_and_gpu_write_the_same_simple_picture() {
     let Some(_gpu) = gpu("cpu_and_gpu_write_the_same_simple_picture") else { return };
-    let place = Place::new(SCENE);
+    let place = Folder::new(SCENE);
     assert_exit(&place.run("render --device cpu -o cpu.ppm scene.txt"), 0, "");
     assert_exit(&place.run("render --device gpu -o gpu.ppm scene.txt"), 0, "");
     let [cpu, gpu] = ["cpu.ppm", "gpu.ppm"].map(|name| std::fs::read(place.path().join(name)).unwrap());
@@ -161,7 +161,7 @@ fn bad_scenes_are_refused_and_touch_nothing() {
         (String::new(), "NEAR"),
     ];
     for (scene, message) in cases {
-        let place = Place::new(&scene);
+        let place = Folder::new(&scene);
         std::fs::write(place.path().join("out.ppm"), "old").unwrap();
         let output = place.run("render --device cpu scene.txt");
         assert_exit(&output, 3, message);
@@ -169,14 +169,14 @@ fn bad_scenes_are_refused_and_touch_nothing() {
         assert_eq!(std::fs::read(place.path().join("out.ppm")).unwrap(), b"old");
         assert_eq!(place.files(), ["out.ppm", "scene.txt"]);
     }
-    let place = Place::new(SCENE);
+    let place = Folder::new(SCENE);
     assert_exit(&place.run("nowhere.txt"), 3, "cannot read the scene nowhere.txt");
     assert_exit(&place.run("render --device cpu ."), 3, "cannot read the scene .");
 }
 
 #[test]
 fn a_bad_scene_does_not_keep_the_others_from_being_rendered() {
-    let place = Place::new(SCENE);
+    let place = Folder::new(SCENE);
     std::fs::write(place.path().join("bad.txt"), "NEAR").unwrap();
     assert_exit(&place.run("render --device cpu bad.txt scene.txt"), 3, "out.ppm: 16 × 8");
     assert_eq!(place.files(), ["bad.txt", "out.ppm", "scene.txt"]);
@@ -186,16 +186,16 @@ fn a_bad_scene_does_not_keep_the_others_from_being_rendered() {
 #[test]
 fn a_tree_of_rays_that_never_ends_is_refused() {
     let glass = |kr: &str| SCENE.to_owned() + &format!("SPHERE t 0 0 -9 1 1 1 1 1 1 1 1 1 {kr} 50 0.5 1.5\n");
-    let place = Place::new(&glass("0.1"));
+    let place = Folder::new(&glass("0.1"));
     assert_exit(&place.run("render --device cpu --max-depth 33 scene.txt"), 2, "--max-depth 32 is the most");
     assert_eq!(place.files(), ["scene.txt"]);
     assert_exit(&place.run("render --device cpu --max-depth 32 scene.txt"), 0, "out.ppm");
-    assert_exit(&Place::new(&glass("0")).run("render --device cpu --max-depth 1000 scene.txt"), 0, "out.ppm");
+    assert_exit(&Folder::new(&glass("0")).run("render --device cpu --max-depth 1000 scene.txt"), 0, "out.ppm");
 }
 
 #[test]
 fn wrong_arguments_are_usage_errors() {
-    let place = Place::new(SCENE);
+    let place = Folder::new(SCENE);
     for arguments in [
         "",
         "render",
@@ -218,7 +218,7 @@ fn wrong_arguments_are_usage_errors() {
 
 #[test]
 fn output_that_cannot_be_written_is_its_own_code() {
-    let place = Place::new(SCENE);
+    let place = Folder::new(SCENE);
     assert_exit(&place.run("render --device cpu -o missing/out.ppm scene.txt"), 6, "missing/out.ppm");
     assert_exit(
         &place.run("render --device cpu -o scene.txt scene.txt"),
@@ -231,7 +231,7 @@ fn output_that_cannot_be_written_is_its_own_code() {
 
 #[test]
 fn pictures_go_to_standard_output_in_every_format() {
-    let place = Place::new(SCENE);
+    let place = Folder::new(SCENE);
     for (format, magic) in [("p6", &b"P6\n16 8\n255\n"[..]), ("p3", b"P3\n16 8\n255\n"), ("png", b"\x89PNG\r\n")] {
         let output = place.run(&format!("render --device cpu --format {format} -o - scene.txt"));
         assert_exit(&output, 0, "standard output: 16 × 8");
@@ -242,7 +242,7 @@ fn pictures_go_to_standard_output_in_every_format() {
 
 #[test]
 fn a_scene_comes_from_standard_input() {
-    let place = Place::new(SCENE);
+    let place = Folder::new(SCENE);
     let file = std::fs::File::open(place.path().join("scene.txt")).unwrap();
     let output = place.command("render --device cpu -q -").stdin(file).output().unwrap();
     assert_exit(&output, 0, "");
@@ -252,7 +252,7 @@ fn a_scene_comes_from_standard_input() {
 
 #[test]
 fn stats_tell_device_effects_rays_and_times() {
-    let place = Place::new(SCENE);
+    let place = Folder::new(SCENE);
     assert_exit(&place.run("render --device cpu --res 20x10 --stats-json stats.json scene.txt"), 0, "20 × 10");
     let stats = std::fs::read_to_string(place.path().join("stats.json")).unwrap();
     let stats: serde_json::Value = serde_json::from_str(&stats).unwrap();
@@ -273,7 +273,7 @@ fn stats_tell_device_effects_rays_and_times() {
 
 #[test]
 fn check_summarises_without_rendering() {
-    let place = Place::new(SCENE);
+    let place = Folder::new(SCENE);
     let output = place.run("check scene.txt");
     assert_exit(&output, 0, "");
     let text = String::from_utf8(output.stdout).unwrap();
@@ -292,7 +292,7 @@ fn check_summarises_without_rendering() {
 
 #[test]
 fn compare_has_three_exit_codes_and_draws_its_findings() {
-    let place = Place::new(SCENE);
+    let place = Folder::new(SCENE);
     assert_exit(&place.run("render --device cpu -q -o a.ppm scene.txt"), 0, "");
     assert_exit(&place.run("render --device cpu -q --effects none -o b.png scene.txt"), 0, "");
     assert_exit(&place.run("compare a.ppm a.ppm"), 0, "");
@@ -318,7 +318,7 @@ fn compare_has_three_exit_codes_and_draws_its_findings() {
 
 #[test]
 fn pictures_are_the_same_bytes_every_time() {
-    let place = Place::new(SCENE);
+    let place = Folder::new(SCENE);
     for format in ["p6", "p3", "png"] {
         let run = || place.run(&format!("render --format {format} -o - scene.txt")).stdout;
         assert!(run() == run(), "{format}");
@@ -327,7 +327,7 @@ fn pictures_are_the_same_bytes_every_time() {
 
 #[test]
 fn stress_lists_judges_and_fails_where_a_promise_is_broken() {
-    let place = Place::new(SCENE);
+    let place = Folder::new(SCENE);
     let list = place.run("stress --list");
     assert_exit(&list, 0, "");
     assert!(String::from_utf8(list.stdout).unwrap().contains("terminator"));
@@ -347,7 +347,7 @@ fn stress_lists_judges_and_fails_where_a_promise_is_broken() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_huge_picture_needs_little_memory() {
-    let place = Place::new(&SCENE.replace("RES 16 8", "RES 20000 20000"));
+    let place = Folder::new(&SCENE.replace("RES 16 8", "RES 20000 20000"));
     let scene = place.path().join("scene.txt");
     let small = peak_memory(place.command("render -q --res 8x8 -o /dev/null scene.txt"));
     let huge = peak_memory(place.command("render -q -o /dev/null scene.txt"));
@@ -374,7 +374,7 @@ fn peak_memory(mut command: Command) -> i64 {
 /// A reader that has seen enough, as `head` has, is no reason to panic or to change the exit code.
 #[test]
 fn a_closed_pipe_is_no_panic() {
-    let place = Place::new(SCENE);
+    let place = Folder::new(SCENE);
     for arguments in ["check scene.txt", "--help", "stress --list", "compare --json scene.txt scene.txt"] {
         let mut child = place.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         drop(child.stdout.take());
@@ -391,7 +391,7 @@ fn scenes_beyond_the_range_of_numbers_are_refused() {
     let too_bright = bright.replace("AMBIENT 1 1 1", "AMBIENT 1 1 1e150");
     let tiny = format!("{SCENE}SPHERE t 0 0 -5 1e-200 1 1 1 1 1 1 0 0 0 1\n");
     for (scene, reason) in [(&too_bright, "sphere 's'"), (&tiny, "sphere 't'")] {
-        let place = Place::new(scene);
+        let place = Folder::new(scene);
         let check = place.run("check scene.txt");
         assert_exit(&check, 3, "");
         assert!(String::from_utf8_lossy(&check.stdout).contains("the scene cannot be rendered"));
@@ -402,7 +402,7 @@ fn scenes_beyond_the_range_of_numbers_are_refused() {
         }
         assert_eq!(place.files(), ["scene.txt"]);
     }
-    let place = Place::new(&bright);
+    let place = Folder::new(&bright);
     assert_exit(&place.run("render scene.txt --device cpu -o c.ppm"), 0, "");
     if gpu("scenes_beyond_the_range_of_numbers_are_refused").is_some() {
         assert_exit(&place.run("render scene.txt --precision fast -o f.ppm"), 4, "fast cannot render this scene");
@@ -415,7 +415,7 @@ fn scenes_beyond_the_range_of_numbers_are_refused() {
 #[test]
 fn a_cache_folder_that_cannot_be_used_is_no_news() {
     let Some(gpu) = gpu("a_cache_folder_that_cannot_be_used_is_no_news") else { return };
-    let place = Place::new(SCENE);
+    let place = Folder::new(SCENE);
     let run = |variables: &[(&str, &str)]| {
         let arguments = format!("render -q --precision robust --device {} scene.txt", gpu.device.info.index);
         let mut command = place.command(&arguments);
@@ -445,7 +445,7 @@ fn a_cache_folder_that_cannot_be_used_is_no_news() {
 #[cfg(target_os = "linux")]
 #[test]
 fn few_threads_are_enough() {
-    let place = Place::new(SCENE);
+    let place = Folder::new(SCENE);
     let mut many = place.command("render --device cpu scene.txt");
     let start = std::time::Instant::now();
     assert_exit(&many.env("RAYON_NUM_THREADS", "100000").output().unwrap(), 0, "out.ppm");
@@ -486,7 +486,7 @@ fn the_shader_of_a_scene_can_be_read() {
     if gpu("the_shader_of_a_scene_can_be_read").is_none() {
         return;
     }
-    let place = Place::new(SCENE);
+    let place = Folder::new(SCENE);
     let printed = |arguments: &str| {
         let output = place.run(&format!("shader scene.txt {arguments}"));
         assert_exit(&output, 0, "");
@@ -517,7 +517,7 @@ fn the_shader_of_a_scene_can_be_read() {
 
 #[test]
 fn a_shader_that_is_not_there_is_refused_with_those_that_are() {
-    let place = Place::new(SCENE);
+    let place = Folder::new(SCENE);
     assert_exit(&place.run("shader --device cpu scene.txt"), 2, "the CPU reference runs no shader");
     assert_exit(&place.run_without_driver("shader scene.txt"), 4, "");
     assert_exit(&place.run("shader missing.txt"), 3, "cannot read the scene missing.txt");

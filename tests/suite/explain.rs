@@ -346,7 +346,7 @@ fn right_pictures_of_random_scenes_are_explained() {
     for seed in 0..count {
         let scene = random_scene(seed, width);
         for settings in conventions() {
-            let deep = Settings { samples: 2, specular: Specular::Blinn, max_depth: 5, ..settings };
+            let deep = Settings { samples_per_side: 2, specular: Specular::Blinn, max_depth: 5, ..settings };
             let case = Case::new(&scene, if seed % 5 == 4 { deep } else { settings });
             let name = |what| format!("seed {seed}, {:?}, {what}", settings.sampling);
             let mut pictures = vec![

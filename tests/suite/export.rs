@@ -8,7 +8,7 @@ use trueray::effects::Effects;
 use trueray::export::{Export, Obstacle, Peer, export};
 use trueray::film::{Leniency, Picture, read_picture};
 use trueray::scene::Scene;
-use trueray::settings::{Quantize, Sampling, Settings, Specular};
+use trueray::settings::{Quantize, SampleOffset, Settings, Specular};
 
 use crate::support::{cpu_picture, root, say_skipped, scene, scene_files, scene_of};
 
@@ -124,12 +124,12 @@ fn samples_lie_where_the_convention_wants_them() {
         line.trim_matches(['<', '>']).split([' ', ',']).filter_map(|x| x.parse().ok()).collect::<Vec<f64>>()
     };
     // Pixels are squares of side ½ at distance 1. Tachyon samples the upper right corner of a pixel, POV-Ray its centre.
-    assert_eq!(frustum(Sampling::Corner, Peer::Tachyon), [0.5, 4.5, -1.5, 0.5]);
-    assert_eq!(frustum(Sampling::BottomLeft, Peer::Tachyon), [0.5, 4.5, -2.0, 0.0]);
-    assert_eq!(frustum(Sampling::Center, Peer::Tachyon), [0.75, 4.75, -1.75, 0.25]);
-    assert_eq!(frustum(Sampling::Center, Peer::PovRay), [3.0, -0.5, -1.0]);
-    assert_eq!(frustum(Sampling::Corner, Peer::PovRay), [2.75, -0.25, -1.0]);
-    assert_eq!(frustum(Sampling::BottomLeft, Peer::PovRay), [2.75, -0.75, -1.0]);
+    assert_eq!(frustum(SampleOffset::Corner, Peer::Tachyon), [0.5, 4.5, -1.5, 0.5]);
+    assert_eq!(frustum(SampleOffset::BottomLeft, Peer::Tachyon), [0.5, 4.5, -2.0, 0.0]);
+    assert_eq!(frustum(SampleOffset::Center, Peer::Tachyon), [0.75, 4.75, -1.75, 0.25]);
+    assert_eq!(frustum(SampleOffset::Center, Peer::PovRay), [3.0, -0.5, -1.0]);
+    assert_eq!(frustum(SampleOffset::Corner, Peer::PovRay), [2.75, -0.25, -1.0]);
+    assert_eq!(frustum(SampleOffset::BottomLeft, Peer::PovRay), [2.75, -0.75, -1.0]);
 }
 
 /// What stands in the way of `peer`, in words.
@@ -174,7 +174,8 @@ fn what_cannot_be_expressed_is_named() {
     }
     let several = format!("{MIRRORS}{}BACK 1 1 1", BALL.replace("2 2 2", "2 1 2"));
     assert_eq!(obstacles(&several, Peer::Tachyon).len(), 2);
-    let grid = written(&scene_of(BALL), &Settings { samples: 2, ..Settings::classic() }, Peer::PovRay).unwrap_err();
+    let grid =
+        written(&scene_of(BALL), &Settings { samples_per_side: 2, ..Settings::classic() }, Peer::PovRay).unwrap_err();
     assert!(matches!(&grid[..], [Obstacle::Settings(what)] if what.contains("one sample a pixel")), "{grid:?}");
 }
 

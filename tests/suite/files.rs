@@ -17,9 +17,9 @@ const SCENE: &str =
 const OLD: &str = "P6\n1 1\n255\nold";
 
 /// A folder where the program runs.
-struct Place(TempDir);
+struct Folder(TempDir);
 
-impl Place {
+impl Folder {
     fn new() -> Self {
         Self(tempfile::tempdir().unwrap())
     }
@@ -77,7 +77,7 @@ impl Place {
 #[cfg(unix)]
 #[test]
 fn no_input_is_an_output_under_whatever_name() {
-    let place = Place::new();
+    let place = Folder::new();
     place.scene("a.txt", "RES 16 8\nOUTPUT b.txt");
     place.scene("b.txt", "RES 16 8\nOUTPUT b.ppm");
     place.run("render -q --device cpu b.txt -o p.ppm", 0, "");
@@ -122,7 +122,7 @@ fn no_input_is_an_output_under_whatever_name() {
 
 #[test]
 fn no_two_outputs_are_one_file() {
-    let place = Place::new();
+    let place = Folder::new();
     place.scene("a.txt", "RES 16 8\nOUTPUT out.ppm");
     place.scene("b.txt", "RES 16 8\nOUTPUT out.ppm");
     fs::create_dir(place.path("folder")).unwrap();
@@ -149,7 +149,7 @@ fn no_two_outputs_are_one_file() {
 /// The part of a name after its last dot is no more of it than that.
 #[test]
 fn scenes_without_output_have_a_name_each() {
-    let place = Place::new();
+    let place = Folder::new();
     for name in ["v.1.txt", "v.2.txt", "plain"] {
         place.scene(name, "RES 16 8");
     }
@@ -163,10 +163,10 @@ fn scenes_without_output_have_a_name_each() {
 #[cfg(unix)]
 #[test]
 fn output_is_a_picture_and_replaces_pictures_alone() {
-    let outside = Place::new();
+    let outside = Folder::new();
     outside.write("target.ppm", OLD);
     let fresh = |output: &str| {
-        let place = Place::with_scene(&format!("OUTPUT {output}"));
+        let place = Folder::with_scene(&format!("OUTPUT {output}"));
         place.write("text.ppm", "not a picture");
         place.write("P6.ppm", "P6rotten");
         place.write("old.PPM", OLD);
@@ -214,7 +214,7 @@ fn output_is_a_picture_and_replaces_pictures_alone() {
     }
     fresh("folder.ppm").run("render --device cpu scene.txt", 6, "no regular file");
     // The scene's name is the user's, but the file there need not be a picture.
-    let place = Place::with_scene("");
+    let place = Folder::with_scene("");
     place.write("scene.ppm", "notes");
     place.run("render --device cpu scene.txt", 6, "does not begin like");
     place.run("render --device cpu scene.txt -o scene.ppm", 0, "");
@@ -223,7 +223,7 @@ fn output_is_a_picture_and_replaces_pictures_alone() {
 /// A scene that is refused does not keep the others from being rendered.
 #[test]
 fn a_refused_name_is_that_scenes_own_trouble() {
-    let place = Place::with_scene("OUTPUT out.ppm");
+    let place = Folder::with_scene("OUTPUT out.ppm");
     place.scene("bad.txt", "RES 16 8\nOUTPUT Makefile");
     place.run("render --device cpu bad.txt scene.txt", 6, "bad.txt: OUTPUT would write `Makefile`");
     assert_eq!(place.files(), ["bad.txt", "out.ppm", "scene.txt"]);
@@ -232,7 +232,7 @@ fn a_refused_name_is_that_scenes_own_trouble() {
 #[test]
 fn an_unknown_ending_is_an_error_unless_a_format_is_asked_for() {
     for name in ["a.bmp", "a.jpg", "a.exr", "a.tif"] {
-        let place = Place::with_scene(&format!("OUTPUT {name}"));
+        let place = Folder::with_scene(&format!("OUTPUT {name}"));
         place.run("scene.txt", 2, ".ppm or .png");
         place.run(&format!("render --device cpu scene.txt -o x-{name}"), 2, "--format p6, p3 or png");
         place.run(&format!("compare scene.txt scene.txt --heatmap {name}"), 2, ".ppm or .png");
@@ -246,10 +246,10 @@ fn an_unknown_ending_is_an_error_unless_a_format_is_asked_for() {
 
 #[test]
 fn quotes_are_no_part_of_a_name() {
-    let place = Place::with_scene("OUTPUT \"a.ppm\"");
+    let place = Folder::with_scene("OUTPUT \"a.ppm\"");
     place.run("scene.txt", 3, "expected a file name without quotes");
     assert_eq!(place.files(), ["scene.txt"]);
-    let place = Place::with_scene("OUTPUT bob's.ppm");
+    let place = Folder::with_scene("OUTPUT bob's.ppm");
     place.run("render --device cpu scene.txt", 0, "bob's.ppm");
 }
 
@@ -257,7 +257,7 @@ fn quotes_are_no_part_of_a_name() {
 #[cfg(unix)]
 #[test]
 fn a_link_to_nothing_yet_is_followed() {
-    let place = Place::with_scene("");
+    let place = Folder::with_scene("");
     fs::create_dir(place.path("folder")).unwrap();
     std::os::unix::fs::symlink("folder/new.ppm", place.path("link.ppm")).unwrap();
     place.run("render --device cpu -o link.ppm --stats-json folder/new.ppm scene.txt", 6, "would overwrite");
@@ -279,7 +279,7 @@ fn a_link_to_nothing_yet_is_followed() {
 #[test]
 fn a_picture_that_cannot_fit_is_not_begun() {
     for (output, format) in [("big.ppm", "p6"), ("big.ppm", "p3"), ("big.png", "png")] {
-        let place = Place::new();
+        let place = Folder::new();
         place.scene("scene.txt", &format!("RES 16777216 16777216\nOUTPUT {output}"));
         let start = Instant::now();
         place.run(&format!("render --device cpu --format {format} scene.txt"), 6, "B are free");
@@ -292,7 +292,7 @@ fn a_picture_that_cannot_fit_is_not_begun() {
 #[cfg(unix)]
 #[test]
 fn a_limit_of_file_size_is_an_error_and_leaves_the_old_file() {
-    let place = Place::with_scene("OUTPUT out.ppm");
+    let place = Folder::with_scene("OUTPUT out.ppm");
     place.write("out.ppm", OLD);
     place.write("stats.json", "old");
     for (arguments, name) in [
@@ -340,7 +340,7 @@ fn interrupts_leave_the_old_picture_or_the_new_one_and_nothing_else() {
     use std::os::unix::process::ExitStatusExt;
 
     let count = std::env::var("TRUERAY_INTERRUPTS").ok().and_then(|count| count.parse().ok()).unwrap_or(24);
-    let place = Place::new();
+    let place = Folder::new();
     place.scene("scene.txt", "RES 1500 1500\nOUTPUT out.ppm");
     let command = || place.command("render -q --device cpu scene.txt");
     let start = Instant::now();
@@ -375,10 +375,10 @@ fn interrupts_leave_the_old_picture_or_the_new_one_and_nothing_else() {
 #[cfg(unix)]
 #[test]
 fn what_a_kill_leaves_goes_with_the_next_run() {
-    let place = Place::new();
+    let place = Folder::new();
     place.scene("scene.txt", "RES 6000 6000\nOUTPUT out.ppm");
     place.write("out.ppm", OLD);
-    let left = |place: &Place| place.files().iter().filter(|name| name.contains(".trueray-")).count();
+    let left = |place: &Folder| place.files().iter().filter(|name| name.contains(".trueray-")).count();
     let started = |others: usize| {
         let child = place.command("render -q --device cpu scene.txt").spawn().unwrap();
         let start = Instant::now();
@@ -418,7 +418,7 @@ fn what_a_kill_leaves_goes_with_the_next_run() {
 #[cfg(target_os = "linux")]
 #[test]
 fn ignored_signals_stay_ignored() {
-    let place = Place::new();
+    let place = Folder::new();
     place.scene("scene.txt", "RES 2000 2000\nOUTPUT out.ppm");
     let command = "trap '' HUP; exec \"$0\" render -q --device cpu scene.txt";
     let mut shell = Command::new("sh");
@@ -440,7 +440,7 @@ fn events(stderr: &[u8]) -> Vec<serde_json::Value> {
 
 #[test]
 fn progress_tells_percent_and_time_left_and_ends_with_an_event() {
-    let place = Place::with_scene("OUTPUT out.ppm");
+    let place = Folder::with_scene("OUTPUT out.ppm");
     let output = place.run("render --device cpu --progress json scene.txt", 0, "");
     let few = events(&output.stderr);
     assert_eq!(few.len(), 1);
@@ -468,7 +468,7 @@ fn progress_tells_percent_and_time_left_and_ends_with_an_event() {
 
 /// Runs until `ready` says so, interrupts, and returns what the program said.
 #[cfg(unix)]
-fn interrupted(place: &Place, arguments: &str, ready: impl Fn(&Path) -> bool) -> Output {
+fn interrupted(place: &Folder, arguments: &str, ready: impl Fn(&Path) -> bool) -> Output {
     use std::os::unix::process::ExitStatusExt;
     let printed = fs::File::create(place.path("printed")).unwrap();
     let child = place.command(arguments).stdout(printed).stderr(Stdio::piped()).spawn().unwrap();
@@ -486,7 +486,7 @@ fn interrupted(place: &Place, arguments: &str, ready: impl Fn(&Path) -> bool) ->
 #[cfg(unix)]
 #[test]
 fn interrupted_measurements_are_written() {
-    let place = Place::with_scene("OUTPUT out.ppm");
+    let place = Folder::with_scene("OUTPUT out.ppm");
     // A table begins when the first scene is done.
     let lines = |least: usize| move |printed: &Path| fs::read_to_string(printed).unwrap().lines().count() >= least;
     let bench = "bench --device cpu --families classic,spheres --res 16x16 --runs 20 --report b.html --csv b.csv";

@@ -12,7 +12,7 @@ use trueray::film::{Encoded, Leniency, decode};
 use trueray::limits;
 use trueray::precision::{Request, Selection, Tier};
 use trueray::scene::{foreign_kind, parse};
-use trueray::settings::{Quantize, Sampling, Settings, Specular};
+use trueray::settings::{Quantize, SampleOffset, Settings, Specular};
 
 const CASES: u32 = 500;
 
@@ -166,14 +166,14 @@ fn hostile_scene() -> impl Strategy<Value = String> {
 }
 
 fn settings() -> impl Strategy<Value = Settings> {
-    let sampling = proptest::sample::select(vec![Sampling::Corner, Sampling::BottomLeft, Sampling::Center]);
+    let sampling = proptest::sample::select(vec![SampleOffset::Corner, SampleOffset::BottomLeft, SampleOffset::Center]);
     let quantize = proptest::sample::select(vec![Quantize::Truncate, Quantize::Round, Quantize::Overscale]);
     let depth = proptest::sample::select(vec![0, 1, 3, 6]);
     (any::<bool>(), sampling, quantize, any::<bool>(), depth, 1..3_u32).prop_map(
-        |(is_exact, sampling, quantize, is_blinn, max_depth, samples)| {
+        |(is_exact, sampling, quantize, is_blinn, max_depth, samples_per_side)| {
             let base = if is_exact { Settings::exact() } else { Settings::classic() };
             let specular = if is_blinn { Specular::Blinn } else { Specular::Phong };
-            Settings { sampling, quantize, specular, max_depth, samples, ..base }
+            Settings { sampling, quantize, specular, max_depth, samples_per_side, ..base }
         },
     )
 }

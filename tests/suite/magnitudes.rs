@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use glam::DVec3;
-use trueray::cpu::{Reference, seen_through};
+use trueray::cpu::{Reference, picked};
 use trueray::effects::Effects;
 use trueray::exact::ExactScene;
 use trueray::gpu::{Choice, Gpu, GpuRenderer, Kernel};
@@ -183,7 +183,7 @@ fn lists_hold_at_every_magnitude() {
         let has_glass = scene.spheres.iter().any(|sphere| sphere.kt != 0.0);
         for (index, pixel) in lists.chunks(3).enumerate().step_by(if has_glass { 7 } else { 3 }) {
             let [x, y] = [index as u32 % scene.width, index as u32 / scene.width];
-            let hit = seen_through(&scene, &settings, x, y);
+            let hit = picked(&scene, &settings, x, y);
             assert!(hit.is_some() || pixel == empty, "scene {seed}, pixel {x} {y}");
             assert!(hit.is_none() || pixel != empty, "scene {seed}, pixel {x} {y}: {hit:?}");
         }
@@ -324,7 +324,7 @@ fn no_picture_depends_on_the_size_of_its_window() {
             for (&kernel, picture) in kernels.iter().zip(&pictures) {
                 assert_eq!(differing(&on_device(kernel, &small), picture), 0, "{kernel:?}, 2^{exponent}");
             }
-            let [seen, small] = [&scene, &small].map(|scene| seen_through(scene, &settings, 16, 12));
+            let [seen, small] = [&scene, &small].map(|scene| picked(scene, &settings, 16, 12));
             if let (Some(seen), Some(small)) = (seen, small) {
                 assert_eq!((seen.sphere, seen.position), (small.sphere, small.position));
                 assert_eq!(seen.t, small.t * 2_f64.powi(exponent));

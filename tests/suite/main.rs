@@ -33,20 +33,23 @@ mod masked;
 mod messages;
 mod misuse;
 mod oracle;
+#[cfg(feature = "view")]
+mod page;
 mod parse;
 mod phong;
 mod pictures;
+#[cfg(feature = "view")]
+mod preview;
 mod rays;
 mod refraction;
 mod sampling;
 mod shaders;
-#[cfg(feature = "view")]
-mod sketch;
 mod stress;
 mod study;
 mod support;
 mod tangents;
 mod tuning;
+mod twins;
 mod verify;
 #[cfg(feature = "view")]
 mod view;

@@ -12,9 +12,9 @@ const SCENE: &str = "NEAR 1\nLEFT -1\nRIGHT 1\nBOTTOM -1\nTOP 1\nRES 16 16\nSPHE
                      AMBIENT 0.9 0.9 0.9\nBACK 0 0 1\nOUTPUT out.ppm\n";
 
 /// A folder in which the program runs.
-struct Place(TempDir);
+struct Folder(TempDir);
 
-impl Place {
+impl Folder {
     fn new(files: &[(&str, &[u8])]) -> Self {
         let folder = tempfile::tempdir().unwrap();
         for (name, contents) in files {
@@ -74,7 +74,7 @@ fn what_is_no_scene_is_named_in_one_line() {
         ("a.zip", b"PK\x03\x04", "a ZIP archive or an office document"),
         ("a.bin", b"NEAR 1\n\0\0", "binary data"),
     ];
-    let place = Place::new(&kinds.map(|(name, contents, _)| (name, contents)));
+    let place = Folder::new(&kinds.map(|(name, contents, _)| (name, contents)));
     std::fs::create_dir(place.path().join("folder")).unwrap();
     for (name, _, kind) in kinds {
         for command in ["", "check ", "render --device cpu "] {
@@ -89,14 +89,14 @@ fn what_is_no_scene_is_named_in_one_line() {
     assert_eq!(json(&unread)[0]["unread"], "a.png: this is a PNG picture, not a scene");
     // Text that begins alike is only a scene with an error.
     for text in ["P3X 1\n", "BMX 1\n", "MZ1\n"] {
-        let place = Place::new(&[("scene.txt", text.as_bytes())]);
+        let place = Folder::new(&[("scene.txt", text.as_bytes())]);
         assert_exit(&place.run("check scene.txt"), 3, "unknown keyword");
     }
 }
 
 #[test]
 fn a_mistyped_command_renders_nothing() {
-    let place = Place::new(&[("scene.txt", SCENE.as_bytes()), ("rendr", SCENE.as_bytes())]);
+    let place = Folder::new(&[("scene.txt", SCENE.as_bytes()), ("rendr", SCENE.as_bytes())]);
     for (word, command) in
         [("chek", "check"), ("Check", "check"), ("comapre", "compare"), ("rneder", "render"), ("stres", "stress")]
     {
@@ -118,7 +118,7 @@ fn a_mistyped_command_renders_nothing() {
 #[test]
 fn doubts_are_warnings_of_check_and_render() {
     let behind = SCENE.replace("0 0 -5.5", "0 0 5");
-    let place = Place::new(&[("scene.txt", SCENE.as_bytes()), ("behind.txt", behind.as_bytes())]);
+    let place = Folder::new(&[("scene.txt", SCENE.as_bytes()), ("behind.txt", behind.as_bytes())]);
     let warning = "trueray: behind.txt: warning: nothing can be seen: every sphere is behind the eye";
     let output = place.run("check behind.txt");
     assert_exit(&output, 0, warning);
@@ -138,7 +138,7 @@ fn doubts_are_warnings_of_check_and_render() {
 
 #[test]
 fn check_doubts_a_name_that_render_refuses() {
-    let place = Place::new(&[("scene.txt", SCENE.replace("out.ppm", ".hidden.ppm").as_bytes())]);
+    let place = Folder::new(&[("scene.txt", SCENE.replace("out.ppm", ".hidden.ppm").as_bytes())]);
     let why = "OUTPUT would write `.hidden.ppm`, a hidden file";
     assert_exit(&place.run("check scene.txt"), 0, &format!("warning: without -o there is no picture: {why}\n"));
     assert_exit(&place.run("render --device cpu scene.txt"), 6, why);
@@ -146,7 +146,7 @@ fn check_doubts_a_name_that_render_refuses() {
 
 #[test]
 fn a_comparison_says_why_it_looks_at_no_device() {
-    let place = Place::new(&[("scene.txt", SCENE.as_bytes())]);
+    let place = Folder::new(&[("scene.txt", SCENE.as_bytes())]);
     assert_exit(&place.run("render --device cpu scene.txt"), 0, "");
     let compare = |device| {
         let mut command = place.command(&["compare", "--scene", "scene.txt", "--device", device, "out.ppm"]);
@@ -158,7 +158,7 @@ fn a_comparison_says_why_it_looks_at_no_device() {
 
 #[test]
 fn patience_is_a_number_of_seconds() {
-    let place = Place::new(&[("scene.txt", SCENE.as_bytes())]);
+    let place = Folder::new(&[("scene.txt", SCENE.as_bytes())]);
     for patience in ["soon", "-1", "0", ""] {
         let output = place.command(&["check", "scene.txt"]).env("TRUERAY_PATIENCE", patience).output().unwrap();
         assert_exit(&output, 2, "TRUERAY_PATIENCE is ");
@@ -183,7 +183,7 @@ fn no_name_is_obeyed_by_a_terminal() {
         |sphere: &str| SCENE.replace("SPHERE s", &format!("SPHERE {sphere}")).replace("1 0 0 0 1\n", "1 1 1 1 1\n");
     let light = format!("LIGHT {HOSTILE} 1 2 3 1 1 1\n");
     let scene = named(HOSTILE) + &light + &format!("SPHERE {HOSTILE} 0 1 -4 1 1 1 1 1 1 0 1 1 1 1\n");
-    let place = Place::new(&[("scene.txt", scene.as_bytes()), ("good.txt", SCENE.as_bytes())]);
+    let place = Folder::new(&[("scene.txt", scene.as_bytes()), ("good.txt", SCENE.as_bytes())]);
     let file = format!("{HOSTILE}.txt");
     std::fs::write(place.path().join(&file), &scene).unwrap();
     let picture = format!("{HOSTILE}.ppm");
@@ -210,7 +210,7 @@ fn no_name_is_obeyed_by_a_terminal() {
 
 #[test]
 fn colour_is_a_choice() {
-    let place = Place::new(&[("bad.txt", b"NEAR x\n")]);
+    let place = Folder::new(&[("bad.txt", b"NEAR x\n")]);
     let is_coloured = |output: Output| {
         assert_exit(&output, 3, "");
         said(&output).contains('\u{1b}')
@@ -233,7 +233,7 @@ fn colour_is_a_choice() {
 #[cfg(target_os = "linux")]
 #[test]
 fn colour_needs_a_terminal_that_wants_it() {
-    let place = Place::new(&[("bad.txt", b"NEAR x\n")]);
+    let place = Folder::new(&[("bad.txt", b"NEAR x\n")]);
     let run = |variable: &str, value: &str| {
         let line = format!("{} check bad.txt", env!("CARGO_BIN_EXE_trueray"));
         let mut command = Command::new("script");
@@ -253,7 +253,7 @@ fn colour_needs_a_terminal_that_wants_it() {
 
 #[test]
 fn compare_reads_standard_input() {
-    let place = Place::new(&[
+    let place = Folder::new(&[
         ("a.ppm", b"P6\n1 1\n255\nabc"),
         ("b.ppm", b"P6\n1 1\n255\nabd"),
         ("scene.txt", SCENE.as_bytes()),
@@ -281,7 +281,7 @@ fn compare_reads_standard_input() {
 #[test]
 fn troubles_of_compare_are_json_where_that_is_asked_for() {
     let place =
-        Place::new(&[("a.ppm", b"P6\n1 1\n255\nabc"), ("b.ppm", b"P6\n2 1\n255\nabcdef"), ("bad.txt", b"NEAR x\n")]);
+        Folder::new(&[("a.ppm", b"P6\n1 1\n255\nabc"), ("b.ppm", b"P6\n2 1\n255\nabcdef"), ("bad.txt", b"NEAR x\n")]);
     for (arguments, error) in [
         ("a.ppm none.ppm", "none.ppm: "),
         ("a.ppm b.ppm", "the pictures differ in size: A is 1x1, B is 2x1"),
@@ -306,7 +306,7 @@ fn troubles_of_compare_are_json_where_that_is_asked_for() {
 
 #[test]
 fn the_heat_map_comes_with_its_legend() {
-    let place = Place::new(&[("a.ppm", b"P6\n2 1\n255\nabcdef"), ("b.ppm", b"P6\n2 1\n255\nabddez")]);
+    let place = Folder::new(&[("a.ppm", b"P6\n2 1\n255\nabcdef"), ("b.ppm", b"P6\n2 1\n255\nabddez")]);
     let output = place.run("compare a.ppm b.ppm --heatmap heat.png");
     assert_exit(&output, 1, "heat map          1 level: purple (1 pixel)\n");
     assert_exit(&output, 1, "                  11 to 50 levels: amber (1 pixel)\n");
@@ -323,7 +323,7 @@ fn a_vast_picture_is_refused_by_its_header() {
     encoder.set_color(png::ColorType::Grayscale);
     encoder.set_depth(png::BitDepth::One);
     encoder.write_header().unwrap().write_chunk(png::chunk::IDAT, &vec![0; 600_000]).unwrap();
-    let place = Place::new(&[("a.ppm", b"P6\n1 1\n255\nabc"), ("bomb.png", &bomb)]);
+    let place = Folder::new(&[("a.ppm", b"P6\n1 1\n255\nabc"), ("bomb.png", &bomb)]);
     for pictures in ["bomb.png a.ppm", "a.ppm bomb.png", "bomb.png bomb.png"] {
         let output = place.run(&format!("compare --lenient {pictures}"));
         assert_exit(&output, 2, "the header promises 65528x65535 pixels; at most 1073741824 are read");
@@ -334,7 +334,7 @@ fn a_vast_picture_is_refused_by_its_header() {
 fn statistics_have_one_shape() {
     let other = SCENE.replace("OUTPUT ", "OUTPUT other-");
     assert_ne!(other, SCENE);
-    let place = Place::new(&[("a.txt", SCENE.as_bytes()), ("b.txt", other.as_bytes())]);
+    let place = Folder::new(&[("a.txt", SCENE.as_bytes()), ("b.txt", other.as_bytes())]);
     for (scenes, count) in [("a.txt", 1), ("a.txt b.txt", 2), ("none.txt", 0)] {
         std::fs::create_dir_all(place.path().join("out")).unwrap();
         place.run(&format!("render --device cpu --stats-json stats.json -o out {scenes}"));
@@ -346,7 +346,7 @@ fn statistics_have_one_shape() {
 
 #[test]
 fn another_template_of_the_assignment_scales_by_255_9() {
-    let place = Place::new(&[("scene.txt", SCENE.as_bytes())]);
+    let place = Folder::new(&[("scene.txt", SCENE.as_bytes())]);
     assert_exit(&place.run("render --device cpu -q -o 255.ppm scene.txt"), 0, "");
     assert_exit(&place.run("render --device cpu -q --quantize 255.9 -o 2559.ppm scene.txt"), 0, "");
     let [a, b] = ["255.ppm", "2559.ppm"].map(|name| std::fs::read(place.path().join(name)).unwrap());

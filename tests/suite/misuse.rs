@@ -80,8 +80,8 @@ fn pictures_out_of_range_are_refused() {
             (sized(0, 40), settings, "width"),
             (sized(40, 0), settings, "height"),
             (sized((1 << 24) + 1, 1), settings, "width"),
-            (sized(40, 40), Settings { samples: 0, ..settings }, "samples"),
-            (sized(40, 40), Settings { samples: 70_000, ..settings }, "samples"),
+            (sized(40, 40), Settings { samples_per_side: 0, ..settings }, "samples"),
+            (sized(40, 40), Settings { samples_per_side: 70_000, ..settings }, "samples"),
             (sized(40, 40), Settings { max_depth: 1001, ..settings }, "max_depth"),
         ] {
             let error = Engine::new(backend, &scene, &settings, &effects).unwrap_err();

@@ -13,7 +13,7 @@ use trueray::effects::Effects;
 use trueray::gpu::{Choice, Gpu};
 use trueray::precision::Tier;
 use trueray::scene::{Scene, parse};
-use trueray::settings::{Quantize, Sampling, Secondary, Settings, Specular};
+use trueray::settings::{Quantize, SampleOffset, Secondary, Settings, Specular};
 use trueray::tuning::Tuning;
 
 use crate::support::{cpu_picture, gpu, gpu_picture};
@@ -155,11 +155,11 @@ const SIZE: u32 = 8;
 const PIXEL: (u32, u32) = (5, 2);
 
 /// The scene of a case, with a window in which the sample of the pixel lies on the ray. All its numbers are exact.
-fn scene(case: &Case, sampling: Sampling) -> Scene {
+fn scene(case: &Case, sampling: SampleOffset) -> Scene {
     let (sx, sy) = match sampling {
-        Sampling::Corner => (0.0, 0.0),
-        Sampling::BottomLeft => (0.0, 1.0),
-        Sampling::Center => (0.5, 0.5),
+        SampleOffset::Corner => (0.0, 0.0),
+        SampleOffset::BottomLeft => (0.0, 1.0),
+        SampleOffset::Center => (0.5, 0.5),
     };
     let side = 2.0;
     let left = case.ray.x - side * (f64::from(PIXEL.0) + sx) / f64::from(SIZE);
@@ -404,7 +404,7 @@ fn a_sample_lies_where_the_settings_say() {
     let statements = vec![outside(&point, &GLOSS), self::lamp(&lamp)];
     let expected = ambient(&GLOSS) + lit(&point, &GLOSS, &lamp, Specular::Phong);
     let mut cases = Vec::new();
-    for sampling in [Sampling::Corner, Sampling::BottomLeft, Sampling::Center] {
+    for sampling in [SampleOffset::Corner, SampleOffset::BottomLeft, SampleOffset::Center] {
         for quantize in [Quantize::Truncate, Quantize::Round, Quantize::Overscale] {
             let case = case(format!("{sampling:?}, {quantize:?}"), SLANTED, statements.clone(), expected);
             cases.push(case.with(|settings| (settings.sampling, settings.quantize) = (sampling, quantize)));
@@ -434,7 +434,7 @@ fn a_pixel_is_the_mean_of_its_samples() {
                 sum += ambient(&material);
             }
             let case = case(format!("{side} x {side}"), AXIS, statements, sum / f64::from(side * side));
-            cases.push(case.only(&name).with(|settings| settings.samples = side));
+            cases.push(case.only(&name).with(|settings| settings.samples_per_side = side));
         }
     }
     check("a_pixel_is_the_mean_of_its_samples", &cases, Ways::Tuned);
@@ -827,10 +827,10 @@ fn a_mirror_from_inside_repeats_its_own_wall() {
 #[test]
 fn the_conventions_are_those_of_the_specification() {
     let classic = Settings::classic();
-    assert_eq!((classic.sampling, classic.quantize), (Sampling::Corner, Quantize::Truncate));
+    assert_eq!((classic.sampling, classic.quantize), (SampleOffset::Corner, Quantize::Truncate));
     assert_eq!((classic.specular, classic.max_depth), (Specular::Phong, 3));
     let exact = Settings::exact();
-    assert_eq!((exact.sampling, exact.quantize), (Sampling::Center, Quantize::Round));
+    assert_eq!((exact.sampling, exact.quantize), (SampleOffset::Center, Quantize::Round));
     assert_eq!(classic.secondary, Secondary { shadow: 1e-3, reflection: 1e-3 });
     assert_eq!(exact.secondary, Secondary { shadow: 0.0, reflection: 0.0 });
     assert_eq!((exact.specular, exact.max_depth), (Specular::Phong, 3));

@@ -23,7 +23,7 @@ fn counted(backend: Backend, scene: &Scene, settings: &Settings, effects: &Effec
 #[test]
 fn the_device_counts_the_rays_of_the_reference() {
     let Some(gpu) = gpu("the_device_counts_the_rays_of_the_reference") else { return };
-    let three = Settings { samples: 3, max_depth: 5, ..Settings::exact() };
+    let three = Settings { samples_per_side: 3, max_depth: 5, ..Settings::exact() };
     for (index, file) in scene_files(&["basic", "effects", "refraction"]).into_iter().enumerate() {
         let mut scene = scene(&file);
         // Parts of tiles at the edges.
@@ -35,7 +35,7 @@ fn the_device_counts_the_rays_of_the_reference() {
             let case = format!("{}, {name}", file.display());
             let effects = Effects::of(&scene, &settings);
             let (expected, picture) = counted(Backend::Reference, &scene, &settings, &effects);
-            let samples = u64::from(settings.samples * settings.samples);
+            let samples = u64::from(settings.samples_per_side * settings.samples_per_side);
             assert_eq!(expected.primary, 61 * 45 * samples, "{case}");
             let (fast, _) = counted(Backend::Device(&gpu, Tier::Fast), &scene, &settings, &effects);
             assert_eq!(fast.primary, expected.primary, "{case}");
@@ -80,7 +80,7 @@ fn rays_of_a_part_of_the_pixels_are_counted() {
     let scene = scene_of(
         "SPHERE a 0.3 0 -5 1 1 1 1 1 1 0 1 0 0.5 1\nSPHERE b 1.5 0 -4 0.5 0.5 0.5 1 1 1 0 1 0 0.5 1\nLIGHT l 3 4 1 1 1 1",
     );
-    let settings = Settings { samples: 2, ..Settings::exact() };
+    let settings = Settings { samples_per_side: 2, ..Settings::exact() };
     let effects = Effects::of(&scene, &settings);
     let samples = Samples::new((scene.width, scene.height), &Density::sparse(0.2)).unwrap();
     let count = |backend| {
@@ -105,9 +105,10 @@ fn a_pixel_may_take_a_hundred_thousand_rays() {
     // Inside a mirror every ray meets it again, and nothing stands before a light.
     let mut scene = scene_of(&format!("SPHERE s 0 0 -3 10 10 10 1 1 1 1 0.5 0 1 10\nAMBIENT 1 1 1\n{lights}"));
     (scene.width, scene.height) = (3, 2);
-    for settings in
-        [Settings { max_depth: 500, ..Settings::exact() }, Settings { max_depth: 250, samples: 2, ..Settings::exact() }]
-    {
+    for settings in [
+        Settings { max_depth: 500, ..Settings::exact() },
+        Settings { max_depth: 250, samples_per_side: 2, ..Settings::exact() },
+    ] {
         let mut effects = Effects::of(&scene, &settings);
         effects.set = effects.set.with(Effect::Shadows, true);
         let (expected, _) = counted(Backend::Reference, &scene, &settings, &effects);

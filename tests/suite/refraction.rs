@@ -3,7 +3,7 @@
 use glam::DVec3;
 use proptest::prelude::*;
 use trueray::compare::{Difference, Explanation};
-use trueray::cpu::oracle::{Body, Passage, refracted};
+use trueray::cpu::oracle::{GlassBody, Passage, refracted};
 use trueray::cpu::{Dd, Judge, Reference};
 use trueray::effects::{Effects, Request};
 use trueray::engine::Backend;
@@ -15,12 +15,12 @@ use trueray::settings::Settings;
 
 use crate::support::{cpu_picture, gpu, gpu_picture, root, say_skipped, scene, scene_files, scene_of};
 
-fn ball(eta: f64) -> Body {
-    Body { center: DVec3::ZERO, scale: DVec3::ONE, eta }
+fn ball(eta: f64) -> GlassBody {
+    GlassBody { center: DVec3::ZERO, scale: DVec3::ONE, eta }
 }
 
 /// The path of a ray that comes down the z axis at `b` from it, in `f64` and in double-double.
-fn passages(b: f64, body: Body, bounces: u32) -> [Passage; 2] {
+fn passages(b: f64, body: GlassBody, bounces: u32) -> [Passage; 2] {
     let (origin, direction) = (DVec3::new(b, 0.0, 5.0), DVec3::NEG_Z);
     [refracted::<f64>(origin, direction, &[body], bounces), refracted::<Dd>(origin, direction, &[body], bounces)]
 }
@@ -94,7 +94,7 @@ proptest! {
         let (scale, target) = (DVec3::from_array(axes), DVec3::from_array(target) * 0.8);
         let origin = DVec3::new(4.0, 5.0, 6.0);
         let direction = (target * scale - origin).normalize() * length;
-        let body = Body { center: DVec3::ZERO, scale, eta };
+        let body = GlassBody { center: DVec3::ZERO, scale, eta };
         let passage = refracted::<f64>(origin, direction, &[body], 1);
         let place = passage.origin;
         prop_assert!(((place / scale).length() - 1.0).abs() < 1e-13);
@@ -120,7 +120,7 @@ proptest! {
         let direction = DVec3::from_array(direction);
         let scale = DVec3::from_array(axes);
         let through = DVec3::new(b[0] * scale.x, b[1] * scale.y, 0.0) * 0.7;
-        let body = Body { center: DVec3::ZERO, scale, eta: 1.0 };
+        let body = GlassBody { center: DVec3::ZERO, scale, eta: 1.0 };
         for bounces in 1..3 {
             let passage = refracted::<f64>(through - direction * 20.0, direction, &[body], bounces);
             prop_assert_eq!(passage.direction, direction);

@@ -183,7 +183,7 @@ fn sampled_pixels_are_those_of_the_full_picture() {
     let gpu = gpu("sampling::sampled_pixels_are_those_of_the_full_picture");
     let many = scene(&root().join("scenes/basic/ten-thousand-spheres.txt"));
     let many = Scene { width: 90, height: 90, ..many };
-    let side = |samples| Settings { samples, ..Settings::exact() };
+    let side = |samples| Settings { samples_per_side: samples, ..Settings::exact() };
     let mut backends = vec![Backend::Reference];
     backends.extend(gpu.as_deref().into_iter().flat_map(|gpu| Tier::ALL.map(|tier| Backend::Device(gpu, tier))));
     for (scene, settings) in [

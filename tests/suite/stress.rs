@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use trueray::cpu::Dd;
-use trueray::cpu::oracle::{Body, refracted};
+use trueray::cpu::oracle::{GlassBody, refracted};
 use trueray::gpu::Kernel;
 use trueray::precision::Tier;
 use trueray::stress::{Class, Random, Row, Verdict, classes, passage, run, table};
@@ -53,8 +53,8 @@ fn too_few_rays_are_no_broken_promise() {
 /// Snell's law where all of its numbers are rational: 63² + 16² = 56² + 33² = 65², and 63/56 is 9/8.
 #[test]
 fn the_truth_of_refraction_is_exact() {
-    let body = |eta| Body { center: DVec3::ZERO, scale: DVec3::splat(65.0), eta };
-    let screen = Body { center: DVec3::ZERO, scale: DVec3::splat(2000.0), eta: 1.0 };
+    let body = |eta| GlassBody { center: DVec3::ZERO, scale: DVec3::splat(65.0), eta };
+    let screen = GlassBody { center: DVec3::ZERO, scale: DVec3::splat(2000.0), eta: 1.0 };
     let (origin, direction) = (DVec3::new(63.0, 0.0, 1000.0), DVec3::NEG_Z);
     let into = passage(origin, direction, &[body(1.125), screen], 1);
     assert_eq!(into.origin, DVec3::new(63.0, 0.0, 16.0));
@@ -80,8 +80,8 @@ fn the_truth_of_refraction_agrees_with_the_formula_of_the_reference() {
         let scale = DVec3::new(random.within(0.3, 2.0), random.within(0.3, 2.0), random.within(0.3, 2.0));
         let origin = random.unit() * 6.0;
         let direction = scale * random.in_ball() - origin;
-        let screen = Body { center: random.in_box(0.5), scale: DVec3::splat(20.0), eta };
-        let bodies = [Body { center: DVec3::ZERO, scale, eta }, screen];
+        let screen = GlassBody { center: random.in_box(0.5), scale: DVec3::splat(20.0), eta };
+        let bodies = [GlassBody { center: DVec3::ZERO, scale, eta }, screen];
         for bounces in 1..4 {
             let [ours, other] = [passage, refracted::<Dd>].map(|path| path(origin, direction, &bodies, bounces));
             let same = |a: DVec3, b: DVec3| (a - b).length() <= 1e-15 * (1.0 + b.length());

@@ -9,13 +9,13 @@ use trueray::sampling::Fill;
 use trueray::scene::Scene;
 use trueray::settings::Settings;
 use trueray::study::{
-    COLUMNS, Contestant, Distance, Manner, Plan, Sample, Study, Subject, csv, hard_cases, html, study,
+    COLUMNS, Contestant, Distance, Manner, Study, StudyInput, StudyPlan, Timings, csv, hard_cases, html, study,
 };
 
 use crate::support::{gpu, scene_of};
 
-fn sample(runs: &[f64]) -> Sample {
-    let mut sample = Sample::default();
+fn sample(runs: &[f64]) -> Timings {
+    let mut sample = Timings::default();
     for run in runs {
         sample.push(*run);
     }
@@ -60,8 +60,8 @@ fn tiny() -> Scene {
 fn measure(scene: &Scene, gpu: Option<&Gpu>, settings: &Settings) -> Study {
     let effects = |settings: &Settings| Effects::of(scene, settings);
     let selection = Selection::of(scene, settings, &effects(settings), Request(None), &Tier::ALL);
-    let subject = Subject { name: "tiny, <scene>", scene, settings, effects: &effects, gpu, selection: &selection };
-    study(&subject, &Plan { runs: 1, seconds: 0.0, depths: Vec::new(), sides: vec![1, 2] }).unwrap()
+    let input = StudyInput { name: "tiny, <scene>", scene, settings, effects: &effects, gpu, selection: &selection };
+    study(&input, &StudyPlan { runs: 1, seconds: 0.0, depths: Vec::new(), sides: vec![1, 2] }).unwrap()
 }
 
 #[test]

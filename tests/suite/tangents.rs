@@ -194,7 +194,7 @@ fn what_follows_a_tangent_is_decided_too() {
     );
     (scene.width, scene.height) = (120, 120);
     for side in [1, 2] {
-        let settings = Settings { samples: side, ..Settings::classic() };
+        let settings = Settings { samples_per_side: side, ..Settings::classic() };
         let effects = Effects::of(&scene, &settings);
         let (expected, _) = cpu_picture::<f64>(&scene, &settings, &effects);
         let (picture, _) = gpu_picture(&gpu, Tier::Double, &scene, &settings, &effects);

@@ -45,7 +45,7 @@ fn cases() -> Vec<(String, Scene, Settings)> {
     let family = |name: &str, size| (format!("{name} {size}"), small(Family::named(name).unwrap().scene(size)));
     let file = scene_files(&["refraction"]).swap_remove(0);
     let glass = (file.display().to_string(), small(scene(&file)));
-    let (classic, samples) = (Settings::classic(), Settings { samples: 2, ..Settings::exact() });
+    let (classic, samples) = (Settings::classic(), Settings { samples_per_side: 2, ..Settings::exact() });
     [
         (family("classic", 5), samples),
         (family("ellipsoids", 100), classic),

@@ -19,8 +19,8 @@ use trueray::precision::{self, Selection};
 use trueray::scene::{Scene, parse};
 use trueray::settings::Settings;
 use trueray::viewer::{
-    Access, Canvas, Desk, FromPage, MAX_PAGES, MAX_UNACKNOWLEDGED, Outgoing, PLACES, Patch, Pose, Range, SAMPLES,
-    SLOTS, Studio, Watched, Wishes, watch,
+    Access, Canvas, FlightScale, MAX_PAGES, MAX_UNACKNOWLEDGED, Outgoing, PageRequest, Patch, Pose, RenderLoop,
+    SAMPLE_COLORS, SAMPLE_MAP, SLOTS, SceneFile, Session, ViewState, watch,
 };
 
 use crate::support::gpu;
@@ -36,8 +36,8 @@ pub(crate) fn scene(text: &str) -> Scene {
     parse("scene.txt", text.as_bytes()).scene.unwrap()
 }
 
-fn wishes() -> Wishes {
-    Wishes {
+fn start() -> ViewState {
+    ViewState {
         pose: None,
         settings: Settings::classic(),
         effects: effects::Request::Auto,
@@ -46,9 +46,9 @@ fn wishes() -> Wishes {
     }
 }
 
-/// A studio at work on a scene file.
+/// A render loop at work on a scene file.
 pub(crate) struct Work {
-    studio: Arc<Studio>,
+    render_loop: Arc<RenderLoop>,
     thread: Option<JoinHandle<()>>,
     folder: tempfile::TempDir,
     /// The device in use.
@@ -60,28 +60,29 @@ impl Work {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("scene.txt");
         std::fs::write(&path, text).unwrap();
-        let studio = Arc::new(Studio::new(Watched::new(&path, scene(text)), wishes()));
-        watch(Arc::clone(&studio.watched), Arc::clone(&studio.bell), Arc::clone(&studio.quit)).unwrap();
+        let render_loop = Arc::new(RenderLoop::new(SceneFile::new(&path, scene(text)), start()));
+        watch(Arc::clone(&render_loop.scene_file), Arc::clone(&render_loop.wake), Arc::clone(&render_loop.quit))
+            .unwrap();
         let gpu = Arc::new(Mutex::new(None));
-        let (painter, slot) = (Arc::clone(&studio), Arc::clone(&gpu));
+        let (rendering, opened) = (Arc::clone(&render_loop), Arc::clone(&gpu));
         let open = move || {
             let gpu = if on_device { Some(Arc::new(Gpu::open(&Choice::Auto)?.keeping_kernels())) } else { None };
-            slot.lock().unwrap().clone_from(&gpu);
+            opened.lock().unwrap().clone_from(&gpu);
             Ok(gpu)
         };
-        let thread = Some(std::thread::spawn(move || painter.run(&mut Box::new(open))));
-        Self { studio, thread, folder, gpu }
+        let thread = Some(std::thread::spawn(move || rendering.run(&mut Box::new(open))));
+        Self { render_loop, thread, folder, gpu }
     }
 
     pub(crate) fn page(&self) -> Page {
         Page {
-            desk: self.studio.sit_down().unwrap(),
-            studio: Arc::clone(&self.studio),
+            session: self.render_loop.connect().unwrap(),
+            render_loop: Arc::clone(&self.render_loop),
             size: (0, 0),
             rgb: Vec::new(),
-            places: std::array::from_fn(|_| Vec::new()),
-            ways: Vec::new(),
-            sketches: 0,
+            maps: std::array::from_fn(|_| Vec::new()),
+            offsets: Vec::new(),
+            sampled_pictures: 0,
         }
     }
 
@@ -92,8 +93,8 @@ impl Work {
 
 impl Drop for Work {
     fn drop(&mut self) {
-        self.studio.quit.store(true, Ordering::Relaxed);
-        self.studio.bell.ring();
+        self.render_loop.quit.store(true, Ordering::Relaxed);
+        self.render_loop.wake.raise();
         let ended = self.thread.take().unwrap().join();
         assert!(ended.is_ok() || std::thread::panicking(), "the thread that renders has panicked");
     }
@@ -101,29 +102,29 @@ impl Drop for Work {
 
 /// What a page does: draws patches and acknowledges.
 pub(crate) struct Page {
-    pub(crate) desk: Arc<Desk>,
-    studio: Arc<Studio>,
+    pub(crate) session: Arc<Session>,
+    render_loop: Arc<RenderLoop>,
     pub(crate) size: (u32, u32),
     pub(crate) rgb: Vec<u8>,
-    /// Of each slot, the way from each pixel to its nearest sample.
-    places: [Vec<[i8; 2]>; SLOTS as usize],
+    /// Of each slot, the offset from each pixel to its nearest sample.
+    maps: [Vec<[i8; 2]>; SLOTS as usize],
     /// Those of the last picture of samples.
-    pub(crate) ways: Vec<[i8; 2]>,
+    pub(crate) offsets: Vec<[i8; 2]>,
     /// Pictures of samples so far.
-    pub(crate) sketches: u32,
+    pub(crate) sampled_pictures: u32,
 }
 
 impl Page {
     pub(crate) fn send(&self, message: &str) {
-        self.desk.receive(&serde_json::from_str(message).unwrap());
-        self.studio.bell.ring();
+        self.session.receive(&serde_json::from_str(message).unwrap());
+        self.render_loop.wake.raise();
     }
 
     /// Draws the next message; words are returned.
     pub(crate) fn next(&mut self) -> Option<Value> {
         let start = Instant::now();
         let message = loop {
-            if let Some(message) = self.desk.take() {
+            if let Some(message) = self.session.take() {
                 break message;
             }
             assert!(start.elapsed() < PATIENCE, "nothing comes");
@@ -137,11 +138,12 @@ impl Page {
         let (number, words) = match message {
             Outgoing::Bytes(bytes) => {
                 match u32::from_le_bytes(bytes[..4].try_into().unwrap()) {
-                    PLACES => {
-                        let ways = bytes[24..].as_chunks::<2>().0;
-                        self.places[bytes[20] as usize] = ways.iter().map(|way| way.map(u8::cast_signed)).collect();
+                    SAMPLE_MAP => {
+                        let offsets = bytes[24..].as_chunks::<2>().0;
+                        self.maps[bytes[20] as usize] =
+                            offsets.iter().map(|offset| offset.map(u8::cast_signed)).collect();
                     }
-                    SAMPLES => self.draw_samples(&bytes),
+                    SAMPLE_COLORS => self.draw_samples(&bytes),
                     _ => {
                         if let Some(patch) = Patch::decode(&bytes) {
                             self.draw(&patch);
@@ -150,7 +152,7 @@ impl Page {
                 }
                 (u64::from(u32::from_le_bytes(bytes[4..8].try_into().unwrap())), None)
             }
-            Outgoing::Words(words) => {
+            Outgoing::Text(words) => {
                 let words: Value = serde_json::from_str(&words).unwrap();
                 (words["number"].as_u64().unwrap(), Some(words))
             }
@@ -182,12 +184,12 @@ impl Page {
         let word = |index: usize| u32::from_le_bytes(message[4 * index..][..4].try_into().unwrap());
         self.size = (word(2), word(3));
         let width = self.size.0 as usize;
-        self.ways.clone_from(&self.places[word(5) as usize]);
-        assert_eq!(self.ways.len(), width * self.size.1 as usize);
+        self.offsets.clone_from(&self.maps[word(5) as usize]);
+        assert_eq!(self.offsets.len(), width * self.size.1 as usize);
         let mut samples = message[24..].as_chunks::<3>().0.iter();
-        let mut pixels = vec![[0; 3]; self.ways.len()];
-        for (pixel, way) in pixels.iter_mut().zip(&self.ways) {
-            if *way == [0, 0] {
+        let mut pixels = vec![[0; 3]; self.offsets.len()];
+        for (pixel, offset) in pixels.iter_mut().zip(&self.offsets) {
+            if *offset == [0, 0] {
                 *pixel = *samples.next().unwrap();
             }
         }
@@ -195,8 +197,8 @@ impl Page {
         let source = |(index, [dx, dy]): (usize, &[i8; 2])| {
             pixels[index.wrapping_add_signed(isize::from(*dx) + isize::from(*dy) * width.cast_signed())]
         };
-        self.rgb = self.ways.iter().enumerate().flat_map(source).collect();
-        self.sketches += 1;
+        self.rgb = self.offsets.iter().enumerate().flat_map(source).collect();
+        self.sampled_pictures += 1;
     }
 
     /// Draws until words have the property.
@@ -210,20 +212,20 @@ impl Page {
         }
     }
 
-    /// Draws until the full picture of the newest wishes is there.
+    /// Draws until the full picture of the newest view is there.
     pub(crate) fn finish(&mut self) -> Value {
-        let version = self.desk.wishes().0;
+        let version = self.session.view().0;
         self.until(|words| words["finished"] == true && words["version"] == version)
     }
 }
 
-/// What `trueray render` gives for what a page wishes.
-pub(crate) fn rendered(gpu: Option<&Gpu>, scene: &Scene, wishes: &Wishes) -> Vec<u8> {
+/// What `trueray render` gives for what a page shows.
+pub(crate) fn rendered(gpu: Option<&Gpu>, scene: &Scene, view: &ViewState) -> Vec<u8> {
     let mut scene = scene.clone();
-    (scene.width, scene.height) = wishes.size(&scene);
-    let settings = wishes.settings();
-    let effects = Effects::requested(&scene, &settings, &wishes.effects);
-    let select = |gpu: &Gpu| Selection::of(&scene, &settings, &effects, wishes.precision, gpu.ladder()).tier;
+    (scene.width, scene.height) = view.size(&scene);
+    let settings = view.settings();
+    let effects = Effects::requested(&scene, &settings, &view.effects);
+    let select = |gpu: &Gpu| Selection::of(&scene, &settings, &effects, view.precision, gpu.ladder()).tier;
     let backend = gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, select(gpu)));
     render_picture(&mut Engine::new(backend, &scene, &settings, &effects).unwrap()).unwrap().0
 }
@@ -253,7 +255,7 @@ fn the_picture_at_rest_is_that_of_render() {
             if index > 0 || page.rgb.is_empty() {
                 page.finish();
             }
-            let expected = rendered(device.as_deref(), &scene(SCENE), &page.desk.wishes().1);
+            let expected = rendered(device.as_deref(), &scene(SCENE), &page.session.view().1);
             assert!(page.rgb == expected, "after {message}, on the device: {on_device}");
         }
     }
@@ -280,7 +282,7 @@ fn the_command_line_of_a_view_renders_it() {
         assert!(output.status.success(), "{options}: {}", String::from_utf8_lossy(&output.stderr));
         page.send(r#"{"do":"save"}"#);
         let file = loop {
-            match page.desk.take() {
+            match page.session.take() {
                 Some(Outgoing::Bytes(bytes)) if bytes[0] == 2 => break bytes,
                 _ => std::thread::sleep(Duration::from_millis(1)),
             }
@@ -295,24 +297,24 @@ fn the_command_line_of_a_view_renders_it() {
 fn a_page_that_does_not_read_gets_no_queue() {
     let work = Work::new(SCENE, false);
     let mut page = work.page();
-    let desk = Arc::clone(&page.desk);
+    let session = Arc::clone(&page.session);
     for _ in 0..200 {
         page.send(r#"{"do":"orbit","right":0.01,"up":0}"#);
         page.send(r#"{"do":"pick","x":1,"y":1}"#);
         std::thread::sleep(Duration::from_millis(1));
     }
     let mut waiting = Vec::new();
-    while let Some(message) = desk.take() {
+    while let Some(message) = session.take() {
         waiting.push(message);
     }
     // A turn that began while there was room ends with a patch, a state, a pixel and a state.
     assert!(!waiting.is_empty() && waiting.len() <= MAX_UNACKNOWLEDGED + 3, "{} messages", waiting.len());
-    assert!(!desk.is_open());
+    assert!(!session.is_open());
     for message in waiting {
         page.handle(message);
     }
     page.finish();
-    assert_eq!(page.rgb, rendered(None, &scene(SCENE), &desk.wishes().1));
+    assert_eq!(page.rgb, rendered(None, &scene(SCENE), &session.view().1));
 }
 
 #[test]
@@ -333,7 +335,7 @@ fn an_edited_scene_is_shown_and_an_error_keeps_the_last_picture() {
     let edited = SCENE.replace("BACK 0.2", "BACK 0.7").replace("RES 90 70", "RES 64 48");
     work.edit(&edited);
     page.until(|words| words["error"].is_null() && words["finished"] == true && words["size"][0] == 64);
-    assert_eq!(page.rgb, rendered(None, &scene(&edited), &wishes()));
+    assert_eq!(page.rgb, rendered(None, &scene(&edited), &start()));
     std::fs::remove_file(work.folder.path().join("scene.txt")).unwrap();
     let state = page.until(|words| !words["error"].is_null());
     assert!(state["error"]["text"].as_str().unwrap().contains("cannot read"));
@@ -351,7 +353,7 @@ fn a_lost_device_is_opened_again() {
         page.send(&format!(r#"{{"do":"orbit","right":0.{},"up":0.1}}"#, round + 1));
         page.until(|words| words["is"] == "lost");
         page.finish();
-        assert_eq!(page.rgb, rendered(Some(&device), &scene(SCENE), &page.desk.wishes().1));
+        assert_eq!(page.rgb, rendered(Some(&device), &scene(SCENE), &page.session.view().1));
     }
 }
 
@@ -359,19 +361,19 @@ fn a_lost_device_is_opened_again() {
 fn pages_have_their_own_pictures_and_may_vanish() {
     let work = Work::new(SCENE, false);
     let mut pages: Vec<_> = (0..MAX_PAGES).map(|_| work.page()).collect();
-    assert!(work.studio.sit_down().is_none());
+    assert!(work.render_loop.connect().is_none());
     for (index, page) in pages.iter().enumerate() {
         page.send(&format!(r#"{{"do":"orbit","right":{},"up":0}}"#, 0.1 * index as f64));
     }
     // Half of them go without a word, some in the midst of a picture.
     for page in pages.drain(..MAX_PAGES / 2) {
-        page.desk.close();
+        page.session.close();
     }
     for page in &mut pages {
         page.finish();
-        assert_eq!(page.rgb, rendered(None, &scene(SCENE), &page.desk.wishes().1));
+        assert_eq!(page.rgb, rendered(None, &scene(SCENE), &page.session.view().1));
     }
-    assert!(work.studio.sit_down().is_some());
+    assert!(work.render_loop.connect().is_some());
 }
 
 #[test]
@@ -383,8 +385,8 @@ fn a_huge_size_is_shown_smaller() {
     assert_eq!(state["shrunk"], true);
     assert!(state["options"].as_str().unwrap().contains("--res 8192x8192"), "{}", state["options"]);
     page.send(r#"{"do":"choose","res":"0x5"}"#);
-    let state = page.until(|words| !words["trouble"].is_null());
-    assert!(state["trouble"].as_str().unwrap().contains("0x5"));
+    let state = page.until(|words| !words["problem"].is_null());
+    assert!(state["problem"].as_str().unwrap().contains("0x5"));
 }
 
 #[test]
@@ -449,8 +451,8 @@ fn patches_are_read_back_and_torn_ones_are_not() {
 
 #[test]
 fn the_eye_moves_as_the_page_asks() {
-    let range = Range { distance: 10.0 };
-    let pose = Pose::of_file(range);
+    let scale = FlightScale { distance: 10.0 };
+    let pose = Pose::of_file(scale);
     assert!(pose.is_of_file() && pose.options().is_empty());
     let close = |a: DVec3, b: DVec3| (a - b).length() < 1e-9;
     // To the right around the middle by a quarter: the eye is to the right of it and looks to the left.
@@ -459,18 +461,18 @@ fn the_eye_moves_as_the_page_asks() {
     assert!(close(pose.orbited(0.0, 0.5).eye, DVec3::new(0.0, 10.0 * 0.5_f64.sin(), -10.0 + 10.0 * 0.5_f64.cos())));
     assert!(close(pose.turned(std::f64::consts::FRAC_PI_2, 0.0).look_at, DVec3::new(10.0, 0.0, 0.0)));
     assert!(pose.turned(0.0, 0.5).look_at.y > 0.0);
-    assert!(close(pose.flown(0.1, 0.2, 0.3, range).eye, DVec3::new(1.0, 2.0, -3.0)));
-    assert!(close(pose.zoomed(0.5, range).eye, DVec3::new(0.0, 0.0, -5.0)));
+    assert!(close(pose.flown(0.1, 0.2, 0.3, scale).eye, DVec3::new(1.0, 2.0, -3.0)));
+    assert!(close(pose.zoomed(0.5, scale).eye, DVec3::new(0.0, 0.0, -5.0)));
     // Never through the poles, and never where there is no view.
     let mut pose = pose;
     for _ in 0..100 {
-        pose = pose.orbited(0.3, 0.3).turned(0.2, 0.4).zoomed(0.5, range).zoomed(f64::NAN, range);
-        pose = pose.flown(f64::INFINITY, 0.0, 0.0, range).flown(1e300, 0.0, 0.0, range);
+        pose = pose.orbited(0.3, 0.3).turned(0.2, 0.4).zoomed(0.5, scale).zoomed(f64::NAN, scale);
+        pose = pose.flown(f64::INFINITY, 0.0, 0.0, scale).flown(1e300, 0.0, 0.0, scale);
         assert!(pose.view().is_ok() && pose.eye.is_finite());
     }
 }
 
-/// NEAR beyond what a page could reach, and spheres behind that: a range all the same, and an eye that moves.
+/// NEAR beyond what a page could reach, and spheres behind that: a distance all the same, and an eye that moves.
 #[test]
 fn worlds_of_any_size_can_be_flown_through() {
     for size in [1e-300, 1e-20, 1e15, 1e16, 1e60, 1e300] {
@@ -480,11 +482,11 @@ fn worlds_of_any_size_can_be_flown_through() {
             4.0 * size
         );
         let parsed = parse("test", text.as_bytes());
-        let range = Range::of(parsed.scene.as_ref().unwrap());
-        assert!(range.distance > 0.0 && range.distance.is_finite(), "{size}");
-        let pose = Pose::of_file(range);
+        let scale = FlightScale::of(parsed.scene.as_ref().unwrap());
+        assert!(scale.distance > 0.0 && scale.distance.is_finite(), "{size}");
+        let pose = Pose::of_file(scale);
         if (1e-300..1e90).contains(&size) {
-            for moved in [pose.orbited(0.3, 0.0), pose.flown(0.0, 0.0, 0.1, range), pose.zoomed(0.5, range)] {
+            for moved in [pose.orbited(0.3, 0.0), pose.flown(0.0, 0.0, 0.1, scale), pose.zoomed(0.5, scale)] {
                 assert!(moved.eye != pose.eye && moved.view().is_ok(), "{size}: {moved:?}");
             }
         }
@@ -512,7 +514,7 @@ fn only_the_page_itself_comes_in() {
 #[test]
 fn messages_that_are_none_are_refused() {
     for text in [r#"{"do":"fly","right":1}"#, r#"{"do":"dance"}"#, "[]", ""] {
-        assert!(serde_json::from_str::<FromPage>(text).is_err(), "{text}");
+        assert!(serde_json::from_str::<PageRequest>(text).is_err(), "{text}");
     }
 }
 
@@ -579,25 +581,30 @@ fn a_large_scene_is_shown_in_part_and_then_whole() {
     page.finish();
     page.send(r#"{"do":"orbit","right":0.2,"up":0.1}"#);
     page.finish();
-    assert_eq!(page.rgb, rendered(None, &scene(&text), &page.desk.wishes().1));
+    assert_eq!(page.rgb, rendered(None, &scene(&text), &page.session.view().1));
 }
 
-/// A studio that starts with these wishes and opens a device like this.
-fn studio_with(
-    start: Wishes,
+/// A render loop whose pages start with this view and that opens a device like this.
+fn work_with(
+    start: ViewState,
     open: impl FnMut() -> Result<Option<Arc<Gpu>>, trueray::gpu::Error> + Send + 'static,
 ) -> Work {
     let mut work = Work::new(SCENE, false);
-    work.studio.quit.store(true, Ordering::Relaxed);
-    work.studio.bell.ring();
+    work.render_loop.quit.store(true, Ordering::Relaxed);
+    work.render_loop.wake.raise();
     work.thread.take().unwrap().join().unwrap();
     let path = work.folder.path().join("scene.txt");
-    work.studio = Arc::new(Studio::new(Watched::new(&path, scene(SCENE)), start));
-    watch(Arc::clone(&work.studio.watched), Arc::clone(&work.studio.bell), Arc::clone(&work.studio.quit)).unwrap();
-    let painter = Arc::clone(&work.studio);
+    work.render_loop = Arc::new(RenderLoop::new(SceneFile::new(&path, scene(SCENE)), start));
+    watch(
+        Arc::clone(&work.render_loop.scene_file),
+        Arc::clone(&work.render_loop.wake),
+        Arc::clone(&work.render_loop.quit),
+    )
+    .unwrap();
+    let rendering = Arc::clone(&work.render_loop);
     work.thread = Some(std::thread::spawn(move || {
         let mut open = open;
-        painter.run(&mut open);
+        rendering.run(&mut open);
     }));
     work
 }
@@ -605,27 +612,27 @@ fn studio_with(
 /// So many samples a pixel overflow a counter, which debug builds answer with a panic; no page can ask for them.
 #[cfg(debug_assertions)]
 #[test]
-fn a_panic_is_told_and_what_is_wished_next_is_shown() {
-    let start = Wishes { settings: Settings { samples: 1 << 16, ..Settings::classic() }, ..wishes() };
-    let work = studio_with(start, || Ok(None));
+fn a_panic_is_told_and_what_is_asked_next_is_shown() {
+    let start = ViewState { settings: Settings { samples_per_side: 1 << 16, ..Settings::classic() }, ..start() };
+    let work = work_with(start, || Ok(None));
     let mut page = work.page();
     let words = page.until(|words| words["is"] == "failed");
     assert!(words["why"].as_str().unwrap().contains("overflow"), "{words}");
     // It is tried again with another scene, and not before.
     std::thread::sleep(Duration::from_millis(300));
-    assert_eq!(page.desk.take(), None);
+    assert_eq!(page.session.take(), None);
     let edited = SCENE.replace("BACK 0.2", "BACK 0.7").replace("RES 90 70", "RES 64 48");
     work.edit(&edited);
     page.until(|words| words["is"] == "failed");
     page.send(r#"{"do":"choose","spp":1}"#);
     page.finish();
-    assert_eq!((page.size, &page.rgb), ((64, 48), &rendered(None, &scene(&edited), &page.desk.wishes().1)));
+    assert_eq!((page.size, &page.rgb), ((64, 48), &rendered(None, &scene(&edited), &page.session.view().1)));
 }
 
 #[test]
 fn a_panic_on_the_way_to_a_device_is_told_and_it_is_opened_again() {
     let mut attempts = 0;
-    let work = studio_with(wishes(), move || {
+    let work = work_with(start(), move || {
         attempts += 1;
         assert!(attempts > 2, "the driver has given up");
         Ok(None)
@@ -634,7 +641,7 @@ fn a_panic_on_the_way_to_a_device_is_told_and_it_is_opened_again() {
     let words = page.until(|words| words["is"] == "lost");
     assert!(words["why"].as_str().unwrap().contains("the driver has given up"), "{words}");
     page.finish();
-    assert_eq!(page.rgb, rendered(None, &scene(SCENE), &wishes()));
+    assert_eq!(page.rgb, rendered(None, &scene(SCENE), &start()));
 }
 
 /// Numbers of any size that a scene file may have: a picture or a reason, and never the end of the service.
@@ -666,11 +673,11 @@ fn every_legal_scene_is_shown_or_refused() {
         let Some(fresh) = parse("test", text.as_bytes()).scene else { continue };
         legal += 1;
         {
-            let mut stage = work.studio.watched.stage.lock().unwrap();
-            (stage.fresh, stage.error) = (Some(fresh), None);
-            stage.readings += 1;
+            let mut slot = work.render_loop.scene_file.slot.lock().unwrap();
+            (slot.fresh, slot.error) = (Some(fresh), None);
+            slot.revision += 1;
         }
-        work.studio.bell.ring();
+        work.render_loop.wake.raise();
         for message in [
             r#"{"do":"choose","res":"8x8"}"#,
             r#"{"do":"orbit","right":0.3,"up":0.1}"#,
@@ -681,9 +688,9 @@ fn every_legal_scene_is_shown_or_refused() {
         ] {
             page.send(message);
         }
-        let version = page.desk.wishes().0;
+        let version = page.session.view().0;
         let words = page.until(|words| {
-            let answered = words["finished"] == true || !words["trouble"].is_null();
+            let answered = words["finished"] == true || !words["problem"].is_null();
             words["is"] == "failed" || words["is"] == "lost" || (answered && words["version"] == version)
         });
         assert_eq!(words["is"], "state", "{words}\n{text}");

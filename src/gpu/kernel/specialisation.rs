@@ -68,7 +68,7 @@ impl Specialisation {
             places: Places::Both,
             sphere_count: 0,
             walk: Walk::InPlace,
-            samples: settings.samples,
+            samples: settings.samples_per_side,
             slots: Slots::Tiles,
             count_rays: false,
             workgroup: tuning.workgroup,

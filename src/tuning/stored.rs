@@ -32,7 +32,7 @@ struct File {
 
 /// What is kept for a device.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Kept {
+pub enum StoredTuning {
     /// Nothing, or it is not wanted.
     Nothing,
     /// A tuning in a file.
@@ -49,26 +49,26 @@ fn path(device: &str, driver: &str) -> Option<PathBuf> {
 }
 
 /// What is kept for the device of this name with this driver.
-pub fn load(device: &str, driver: &str) -> Kept {
+pub fn load(device: &str, driver: &str) -> StoredTuning {
     if std::env::var_os(IGNORE).is_some_and(|value| !value.is_empty() && value != "0") {
-        return Kept::Nothing;
+        return StoredTuning::Nothing;
     }
-    path(device, driver).map_or(Kept::Nothing, |path| read(&path, device, driver))
+    path(device, driver).map_or(StoredTuning::Nothing, |path| read(&path, device, driver))
 }
 
-fn read(path: &Path, device: &str, driver: &str) -> Kept {
+fn read(path: &Path, device: &str, driver: &str) -> StoredTuning {
     let unusable = |why: String| {
-        Kept::Unusable(format!(
+        StoredTuning::Unusable(format!(
             "the tuning in {} is ignored: {why}; `trueray bench --tune` makes it anew",
             path.display()
         ))
     };
     let text = match std::fs::read_to_string(path) {
         Ok(text) => text,
-        Err(error) if error.kind() == ErrorKind::NotFound => return Kept::Nothing,
+        Err(error) if error.kind() == ErrorKind::NotFound => return StoredTuning::Nothing,
         // What is no text is a file that was damaged.
         Err(error) if error.kind() == ErrorKind::InvalidData => return unusable(error.to_string()),
-        Err(error) => return Kept::Closed(format!("{} cannot be read: {error}", path.display())),
+        Err(error) => return StoredTuning::Closed(format!("{} cannot be read: {error}", path.display())),
     };
     let file: File = match serde_json::from_str(&text) {
         Ok(file) => file,
@@ -79,7 +79,7 @@ fn read(path: &Path, device: &str, driver: &str) -> Kept {
     }
     match file.tuning.problem() {
         Some(problem) => unusable(problem),
-        None => Kept::Tuning(file.tuning, path.to_owned()),
+        None => StoredTuning::Tuning(file.tuning, path.to_owned()),
     }
 }
 

@@ -8,8 +8,8 @@ use std::time::{Duration, SystemTime};
 
 use serde::Serialize;
 
-use super::desk::{Bell, lock};
-use super::studio::words_of;
+use super::wake_signal::{WakeSignal, lock};
+use crate::panics::message;
 use crate::scene::{Scene, Severity, parse};
 
 /// Time between two looks at the file.
@@ -17,7 +17,7 @@ const INTERVAL: Duration = Duration::from_millis(100);
 
 /// Why the file is no scene that can be rendered.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Reading {
+pub struct SceneError {
     /// Line of the first error, from 1; 0 where the file cannot be read.
     pub line: usize,
     /// The errors, as on the command line.
@@ -26,29 +26,29 @@ pub struct Reading {
 
 /// What is known of the scene file.
 #[derive(Debug, Default)]
-pub struct Stage {
+pub struct SceneSlot {
     /// A scene that nobody has taken yet.
     pub fresh: Option<Scene>,
     /// What is wrong with the file as it is now.
-    pub error: Option<Reading>,
-    /// Grows with every reading.
-    pub readings: u64,
+    pub error: Option<SceneError>,
+    /// Grows with every time that it is read.
+    pub revision: u64,
 }
 
 /// A scene file that is watched.
 #[derive(Debug)]
-pub struct Watched {
+pub struct SceneFile {
     /// Where it is.
     pub path: PathBuf,
     /// What is known of it.
-    pub stage: Mutex<Stage>,
+    pub slot: Mutex<SceneSlot>,
 }
 
-impl Watched {
+impl SceneFile {
     /// A file that has been read as `scene`.
     pub fn new(path: &Path, scene: Scene) -> Self {
-        let stage = Stage { fresh: Some(scene), error: None, readings: 1 };
-        Self { path: path.to_owned(), stage: Mutex::new(stage) }
+        let slot = SceneSlot { fresh: Some(scene), error: None, revision: 1 };
+        Self { path: path.to_owned(), slot: Mutex::new(slot) }
     }
 
     /// Reads the file again.
@@ -56,25 +56,25 @@ impl Watched {
         let name = self.path.display().to_string();
         // Whatever is in the file, the next one is looked at.
         let result = catch_unwind(|| read(&name, &self.path)).unwrap_or_else(|panic| {
-            Err(Reading { line: 0, text: format!("the scene {name} cannot be read: {}", words_of(&*panic)) })
+            Err(SceneError { line: 0, text: format!("the scene {name} cannot be read: {}", message(&*panic)) })
         });
-        let mut stage = lock(&self.stage);
-        stage.readings += 1;
+        let mut slot = lock(&self.slot);
+        slot.revision += 1;
         match result {
-            Ok(scene) => (stage.fresh, stage.error) = (Some(scene), None),
-            Err(error) => stage.error = Some(error),
+            Ok(scene) => (slot.fresh, slot.error) = (Some(scene), None),
+            Err(error) => slot.error = Some(error),
         }
     }
 }
 
-fn read(name: &str, path: &Path) -> Result<Scene, Reading> {
+fn read(name: &str, path: &Path) -> Result<Scene, SceneError> {
     let text = std::fs::read(path)
-        .map_err(|error| Reading { line: 0, text: format!("cannot read the scene {name}: {error}") })?;
+        .map_err(|error| SceneError { line: 0, text: format!("cannot read the scene {name}: {error}") })?;
     let parsed = parse(name, &text);
     let line = parsed.diagnostics.iter().find(|diagnostic| diagnostic.severity == Severity::Error);
     let line = line.map_or(0, |diagnostic| diagnostic.line);
     let report = parsed.report(false);
-    parsed.scene.ok_or(Reading { line, text: report })
+    parsed.scene.ok_or(SceneError { line, text: report })
 }
 
 /// Time of the last change and size: what a poll compares.
@@ -88,16 +88,16 @@ fn state(path: &Path) -> Option<(SystemTime, u64)> {
 /// # Errors
 ///
 /// Where there is no thread.
-pub fn watch(watched: Arc<Watched>, bell: Arc<Bell>, quit: Arc<AtomicBool>) -> std::io::Result<()> {
-    let mut known = state(&watched.path);
+pub fn watch(file: Arc<SceneFile>, wake: Arc<WakeSignal>, quit: Arc<AtomicBool>) -> std::io::Result<()> {
+    let mut known = state(&file.path);
     let look = move || {
         while !quit.load(Ordering::Relaxed) {
             std::thread::sleep(INTERVAL);
-            let now = state(&watched.path);
+            let now = state(&file.path);
             if now != known {
                 known = now;
-                watched.read();
-                bell.ring();
+                file.read();
+                wake.raise();
             }
         }
     };

@@ -1,103 +1,13 @@
-//! What goes over the WebSocket: JSON from the page; to the page JSON for words and binary messages for pixels.
-//!
-//! Every message to the page has a number, one more than the last; `{"do": "ack", "through": n}` acknowledges all up to n.
+//! Pixels on their way to the page.
 //!
 //! A patch is, in little-endian `u32`s: [`PATCH`], its number, the picture's width and height, the step k, the number of
 //! rectangles; then for each rectangle its left, top, width and height in pixels of the picture, followed by its pixels, 3
 //! bytes each, row by row. With step k > 1 each pixel that is sent stands for k × k of the picture, whose corner it has.
-//! Pictures of which a part is sampled go in messages of their own: `places.rs` has them.
-
-use serde::Deserialize;
 
 /// First word of a message with pixels.
 pub const PATCH: u32 = 1;
 /// First word of a message whose rest, from the third word on, is a PNG file.
 pub const PICTURE_FILE: u32 = 2;
-
-/// What a page asks for.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(tag = "do", rename_all = "kebab-case", deny_unknown_fields)]
-pub enum FromPage {
-    /// The messages up to this number have been drawn.
-    Ack {
-        /// The number.
-        through: u32,
-    },
-    /// Move the eye around what it looks at, in radians.
-    Orbit {
-        /// To the right.
-        right: f64,
-        /// Upwards.
-        up: f64,
-    },
-    /// Turn the view, in radians.
-    Turn {
-        /// To the right.
-        right: f64,
-        /// Upwards.
-        up: f64,
-    },
-    /// Move eye and target along the picture's axes, in parts of the distance of the spheres.
-    Fly {
-        /// To the right.
-        right: f64,
-        /// Upwards.
-        up: f64,
-        /// Forwards.
-        forward: f64,
-    },
-    /// Multiply the distance to what the eye looks at.
-    Zoom {
-        /// By this, > 0.
-        by: f64,
-    },
-    /// Back to the view of the start.
-    Reset,
-    /// Options of the command line, each as its text; what is absent stays.
-    Choose {
-        /// `--convention`.
-        convention: Option<String>,
-        /// `--effects`.
-        effects: Option<String>,
-        /// `--precision`.
-        precision: Option<String>,
-        /// `--max-depth`.
-        max_depth: Option<u32>,
-        /// `--spp`.
-        spp: Option<u32>,
-        /// `--res`, or empty for the scene's own.
-        res: Option<String>,
-    },
-    /// One looks at this place of the picture, in parts of it from its top left.
-    Gaze {
-        /// From the left.
-        x: f64,
-        /// From the top.
-        y: f64,
-    },
-    /// How moving pictures are sampled; what is absent stays.
-    Attend {
-        /// What they have fewer of: `foveated`, `sparse`, `coarse`.
-        economy: Option<String>,
-        /// The least part of the pixels that is sampled.
-        least: Option<f64>,
-        /// Radius of the fovea, in parts of the picture's shorter side.
-        radius: Option<f64>,
-        /// Its falloff, likewise.
-        falloff: Option<f64>,
-    },
-    /// Say what pixel (column `x`, row `y`) of the picture shows.
-    Pick {
-        /// Column.
-        x: u32,
-        /// Row.
-        y: u32,
-    },
-    /// Send the finished picture as a PNG file.
-    Save,
-    /// Measure what each effect costs.
-    Measure,
-}
 
 /// A rectangle of the picture, in its pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -129,7 +39,7 @@ impl Patch {
         (part.width.div_ceil(self.step) as usize, part.height.div_ceil(self.step) as usize)
     }
 
-    /// The message; its number is written by whoever sends it.
+    /// The message; its number is written where it is sent.
     pub fn encode(&self) -> Vec<u8> {
         let bytes = 24 + self.parts.iter().map(|(_, rgb)| 16 + rgb.len()).sum::<usize>();
         let mut message = Vec::with_capacity(bytes);

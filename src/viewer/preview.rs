@@ -1,14 +1,14 @@
-//! How the picture is shown while the eye moves: where samples are, and how many.
+//! How the picture is sampled while the eye moves.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use super::protocol::FromPage;
+use super::requests::PageRequest;
 use crate::sampling::{Density, Fovea};
 
 /// What a moving picture has fewer of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Economy {
+pub enum PreviewMode {
     /// Samples away from where one looks.
     Foveated,
     /// Samples everywhere.
@@ -17,11 +17,11 @@ pub enum Economy {
     Coarse,
 }
 
-/// What a page says of how it is looked at; pictures at rest do not depend on it.
+/// How the moving pictures of a page are sampled; pictures at rest do not depend on it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Attention {
+pub struct PreviewOptions {
     /// What a moving picture has fewer of.
-    pub economy: Economy,
+    pub mode: PreviewMode,
     /// The least part of the pixels that is sampled.
     pub least: f64,
     /// Radius and falloff of the fovea, in parts of the picture's shorter side.
@@ -30,64 +30,57 @@ pub struct Attention {
     pub gaze: [f64; 2],
 }
 
-impl Attention {
+impl PreviewOptions {
     /// The least densities that a page can ask for; below, nearest samples would be too far away for two bytes.
     pub const DENSITIES: [f64; 2] = [1.0 / 64.0, 1.0];
 
     /// Does what the page asks; a message says why it cannot be.
-    pub(super) fn heed(&mut self, message: &FromPage) -> Result<(), String> {
-        match message {
-            FromPage::Gaze { x, y } => self.gaze = [x, y].map(|part| part.clamp(0.0, 1.0)),
-            FromPage::Attend { economy, least, radius, falloff } => {
-                let mut attention = *self;
-                if let Some(name) = economy {
-                    attention.economy = match name.as_str() {
-                        "foveated" => Economy::Foveated,
-                        "sparse" => Economy::Sparse,
-                        "coarse" => Economy::Coarse,
-                        _ => return Err(format!("no moving picture is called '{name}'")),
-                    };
-                }
+    pub(super) fn apply(&mut self, request: &PageRequest) -> Result<(), String> {
+        match request {
+            PageRequest::Gaze { x, y } => self.gaze = [x, y].map(|part| part.clamp(0.0, 1.0)),
+            PageRequest::Preview { mode, least, radius, falloff } => {
+                let mut preview = *self;
+                preview.mode = mode.unwrap_or(preview.mode);
                 if let Some(least) = *least {
                     let [low, high] = Self::DENSITIES;
                     if !(low..=high).contains(&least) {
                         return Err(format!("the least density is from {low} to {high}"));
                     }
-                    attention.least = least;
+                    preview.least = least;
                 }
                 if let Some(radius) = *radius {
                     if !(0.0..=1.0).contains(&radius) {
                         return Err("the radius of the fovea is from 0 to 1".into());
                     }
-                    attention.fovea[0] = radius;
+                    preview.fovea[0] = radius;
                 }
                 if let Some(falloff) = *falloff {
                     if !(0.01..=10.0).contains(&falloff) {
                         return Err("the falloff is from 0.01 to 10".into());
                     }
-                    attention.fovea[1] = falloff;
+                    preview.fovea[1] = falloff;
                 }
-                *self = attention;
+                *self = preview;
             }
             _ => {}
         }
         Ok(())
     }
 
-    /// Number of ever cheaper maps.
+    /// Number of ever cheaper densities.
     pub(super) fn levels(&self) -> usize {
-        match self.economy {
-            Economy::Foveated | Economy::Sparse => 5,
-            Economy::Coarse => 0,
+        match self.mode {
+            PreviewMode::Foveated | PreviewMode::Sparse => 5,
+            PreviewMode::Coarse => 0,
         }
     }
 
-    /// The map at a level, 0 being the densest.
+    /// The density at a level, 0 being the densest.
     pub(super) fn density(&self, level: usize, size: (u32, u32)) -> Density {
         // From half of the pixels, or less, to the least in equal ratios.
         let ratio = level.min(4) as f64 / 4.0;
         let part = self.least.max(0.5).powf(1.0 - ratio) * self.least.powf(ratio);
-        if self.economy != Economy::Foveated {
+        if self.mode != PreviewMode::Foveated {
             return Density::sparse(part);
         }
         let unit = f64::from(size.0.min(size.1));
@@ -99,8 +92,8 @@ impl Attention {
     }
 }
 
-impl Default for Attention {
+impl Default for PreviewOptions {
     fn default() -> Self {
-        Self { economy: Economy::Foveated, least: 1.0 / 64.0, fovea: [0.15, 0.15], gaze: [0.5, 0.5] }
+        Self { mode: PreviewMode::Foveated, least: 1.0 / 64.0, fovea: [0.15, 0.15], gaze: [0.5, 0.5] }
     }
 }

@@ -7,11 +7,11 @@ const WIDE: f64 = 0.5;
 
 /// Times of several runs, in ms.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct Sample {
+pub struct Timings {
     runs: Vec<f64>,
 }
 
-impl Sample {
+impl Timings {
     /// Adds one run.
     pub fn push(&mut self, ms: f64) {
         self.runs.push(ms);

@@ -1,4 +1,4 @@
-//! What a pixel shows, in words: the sphere that its ray meets first.
+//! What a pixel shows: the sphere that its ray meets first.
 
 use glam::DVec3;
 
@@ -15,7 +15,7 @@ use crate::settings::Settings;
 
 /// The first hit of a pixel's ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Seen {
+pub struct PrimaryHit {
     /// Index of the sphere.
     pub sphere: usize,
     /// Parameter of the ray; 1 is the image plane.
@@ -28,14 +28,14 @@ pub struct Seen {
 
 /// What pixel (column `x`, row `y`) shows: that of its samples which is next to the middle. Tries every sphere once, which is
 /// less work for a single ray than any list.
-pub fn seen_through(scene: &Scene, settings: &Settings, x: u32, y: u32) -> Option<Seen> {
+pub fn picked(scene: &Scene, settings: &Settings, x: u32, y: u32) -> Option<PrimaryHit> {
     if x >= scene.width || y >= scene.height {
         return None;
     }
     let (world, settings_in_range) = in_range(scene, settings);
     let camera = Camera::new(&world, &settings_in_range);
-    let middle = settings.samples / 2;
-    let sample = [x, y].map(|at| at * settings.samples + middle);
+    let middle = settings.samples_per_side / 2;
+    let sample = [x, y].map(|at| at * settings.samples_per_side + middle);
     let direction = camera.column(sample[0]) + camera.row(sample[1]);
     let ray = Ray::<f64> { origin: Vec3::ZERO, direction: Vec3::from_f64(direction) };
     let exact = ExactCamera::new(scene, settings);
@@ -57,5 +57,5 @@ pub fn seen_through(scene: &Scene, settings: &Settings, x: u32, y: u32) -> Optio
     let (sphere, inside) = nearest?;
     // Back from the units of kernels: the two windows differ by their factor.
     let from_eye = direction * range.t_max * (scene.window.near / world.window.near);
-    Some(Seen { sphere, t: range.t_max * camera.stretch(), position: settings.view.eye + from_eye, inside })
+    Some(PrimaryHit { sphere, t: range.t_max * camera.stretch(), position: settings.view.eye + from_eye, inside })
 }

@@ -9,23 +9,24 @@ const ROUNDS: usize = 4;
 
 /// What an effect costs.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub(super) struct Cost {
-    effect: Effect,
+pub struct EffectTimes {
+    /// Which.
+    pub effect: Effect,
     /// Least time with it, in ms.
-    with_ms: f64,
+    pub with_ms: f64,
     /// Least time without it, in ms.
-    without_ms: f64,
+    pub without_ms: f64,
 }
 
 /// A measurement on its way: one picture a step.
 #[derive(Debug, Default)]
-pub(super) struct Measurement {
-    costs: Vec<Cost>,
+pub(super) struct CostMeasurement {
+    costs: Vec<EffectTimes>,
     /// Pictures of the effect at hand so far.
     pictures: usize,
 }
 
-impl Measurement {
+impl CostMeasurement {
     fn effect(&self) -> Effect {
         Effect::ALL[self.costs.len().saturating_sub(usize::from(self.pictures > 0)).min(Effect::ALL.len() - 1)]
     }
@@ -42,10 +43,10 @@ impl Measurement {
     }
 
     /// Notes the time of the picture, in ms; after the last one of all the table.
-    pub(super) fn note(&mut self, time: f64) -> Option<&[Cost]> {
+    pub(super) fn note(&mut self, time: f64) -> Option<&[EffectTimes]> {
         let effect = self.effect();
         if self.pictures == 0 {
-            self.costs.push(Cost { effect, with_ms: f64::INFINITY, without_ms: f64::INFINITY });
+            self.costs.push(EffectTimes { effect, with_ms: f64::INFINITY, without_ms: f64::INFINITY });
         }
         if let Some(cost) = self.costs.last_mut().filter(|_| self.pictures >= 2) {
             let least = if self.pictures.is_multiple_of(2) { &mut cost.with_ms } else { &mut cost.without_ms };

@@ -1,0 +1,242 @@
+//! Renders for one page: a coarse picture first, then finer ones, then the very picture that `trueray render` gives.
+
+mod coarse;
+mod one_shots;
+mod pass;
+mod reduced;
+mod sampled;
+mod state;
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use super::canvas::Canvas;
+use super::cost_model::CostModel;
+use super::effect_cost::CostMeasurement;
+use super::sample_map_cache::{PreviewMap, SampleMapCache};
+use super::scene_file::SceneError;
+use super::session::Session;
+use super::view_state::ViewState;
+use crate::effects::Effects;
+use crate::engine::{Backend, ms};
+use crate::gpu::{self, Gpu};
+use crate::limits;
+use crate::precision::{Selection, Tier};
+use crate::scene::Scene;
+use crate::settings::Settings;
+use coarse::fitted;
+use pass::{FrameStats, Pass};
+use reduced::{MANY_SPHERES, Reduced};
+
+/// A frame should take no longer while the eye moves, in ms, so that 30 of them fit into a second with their way to the page.
+const FRAME_MS: f64 = 26.0;
+/// A slice of a finer picture should take about this long: so long may new input wait.
+const SLICE_MS: f64 = 20.0;
+/// A picture that takes longer shows a coarser one first.
+const COARSE_FIRST_MS: f64 = 200.0;
+/// The eye is at rest when the view has not changed for so long: then all of a large scene is prepared, which takes its time.
+const REST: Duration = Duration::from_millis(250);
+
+/// What every picture of a page has in common until its view changes.
+#[derive(Debug, Clone)]
+struct Job {
+    version: u64,
+    view: ViewState,
+    settings: Settings,
+    effects: Effects,
+    selection: Selection,
+    size: (u32, u32),
+    /// Coarse steps and samples (on each side of a pixel) of the pictures to come, last one first.
+    passes: Vec<(u32, u32)>,
+    /// What of the first of them is shown at once, where it is not all.
+    map: Option<Arc<PreviewMap>>,
+    /// Time that all this took, in ms; counted with the first picture.
+    took: f64,
+}
+
+/// A page's picture and what it takes to render it.
+#[derive(Debug)]
+pub(super) struct SessionRenderer<'g> {
+    pub(super) session: Arc<Session>,
+    gpu: Option<&'g Gpu>,
+    canvas: Canvas,
+    pub(super) costs: CostModel,
+    job: Option<Job>,
+    pass: Option<Pass<'g>>,
+    maps: SampleMapCache<'g>,
+    shown: FrameStats,
+    not_finite: u64,
+    measurement: Option<CostMeasurement>,
+    reduced: Reduced,
+    /// Why there is no picture of the newest view, or what was refused.
+    problem: Option<String>,
+    /// Whether the page is to be told its state, even if no picture is finished.
+    tell: bool,
+}
+
+/// What the pages have in common.
+#[derive(Debug)]
+pub(super) struct Context<'s> {
+    pub(super) scene: &'s mut Scene,
+    pub(super) scene_file: &'s str,
+    pub(super) error: Option<&'s SceneError>,
+    /// Pages that have work.
+    pub(super) busy: usize,
+    /// Pixels that the page may have.
+    pub(super) pixels: u64,
+}
+
+impl<'g> SessionRenderer<'g> {
+    pub(super) fn new(session: Arc<Session>, gpu: Option<&'g Gpu>, costs: CostModel) -> Self {
+        Self {
+            session,
+            gpu,
+            canvas: Canvas::new((1, 1)),
+            costs,
+            job: None,
+            pass: None,
+            maps: SampleMapCache::default(),
+            shown: FrameStats::default(),
+            not_finite: 0,
+            measurement: None,
+            reduced: Reduced::default(),
+            problem: None,
+            tell: true,
+        }
+    }
+
+    /// The scene has changed, or what is known of its file.
+    pub(super) fn scene_changed(&mut self, replaced: bool) {
+        self.tell = true;
+        if replaced {
+            (self.job, self.pass, self.measurement, self.reduced.shown) = (None, None, None, None);
+        }
+    }
+
+    /// Pixels that this page keeps.
+    pub(super) fn pixels(&self) -> u64 {
+        u64::from(self.canvas.size().0) * u64::from(self.canvas.size().1)
+    }
+
+    fn is_outdated(&self) -> bool {
+        self.job.as_ref().is_none_or(|job| job.version != self.session.version())
+    }
+
+    /// Whether there is something to do now.
+    pub(super) fn has_work(&self) -> bool {
+        let unfinished = || self.pass.is_some() || self.job.as_ref().is_some_and(|job| !job.passes.is_empty());
+        let wanted = self.is_outdated() || unfinished() || self.tell || self.measurement.is_some() || self.lacks_map();
+        (wanted || self.session.has_one_shots())
+            && self.session.is_open()
+            && !self.session.is_closed()
+            && !self.session.has_failed()
+    }
+
+    /// Does a little: some tens of milliseconds, unless kernels are compiled. Only a lost device is an error.
+    pub(super) fn advance(&mut self, context: &mut Context) -> Result<(), gpu::Error> {
+        match self.try_advance(context) {
+            Err(error) if error.is_refusal() || matches!(error, gpu::Error::Misuse(_)) => {
+                self.problem = Some(error.to_string());
+                (self.pass, self.measurement) = (None, None);
+                if let Some(job) = &mut self.job {
+                    job.passes.clear();
+                }
+                self.send_state(context);
+                Ok(())
+            }
+            result => result,
+        }
+    }
+
+    fn try_advance(&mut self, context: &mut Context) -> Result<(), gpu::Error> {
+        let is_large = context.scene.spheres.len() > MANY_SPHERES;
+        if self.is_outdated() && (is_large || !self.pass.as_ref().is_some_and(|pass| pass.first)) {
+            match self.reduced.shown {
+                _ if !is_large => self.start_job(context)?,
+                Some((version, since)) if version == self.session.version() => {
+                    if since.elapsed() >= REST {
+                        self.start_job(context)?;
+                    } else {
+                        std::thread::sleep(Duration::from_millis(2));
+                    }
+                }
+                _ => return self.render_reduced(context),
+            }
+        }
+        self.run_one_shots(context);
+        if is_large && self.is_outdated() {
+            return Ok(());
+        }
+        if self.pass.is_none() {
+            self.next_pass(context)?;
+        }
+        if self.pass.is_some() {
+            return self.render_slice(context);
+        }
+        if self.tell && self.session.is_open() {
+            self.send_state(context);
+        }
+        if self.problem.is_some() {
+            return Ok(());
+        }
+        if self.lacks_map() && self.session.is_open() {
+            return self.prepare_map();
+        }
+        self.measure(context)
+    }
+
+    /// Plans the pictures of the newest view.
+    fn start_job(&mut self, context: &mut Context) -> Result<(), gpu::Error> {
+        let start = Instant::now();
+        let (version, view) = self.session.view();
+        let settings = view.settings();
+        let asked = view.size(context.scene);
+        let size = fitted(asked, context.pixels);
+        let effects = Effects::requested(context.scene, &settings, &view.effects);
+        let ladder = self.gpu.map_or(&Tier::ALL[..], Gpu::ladder);
+        let selection = Selection::of(context.scene, &settings, &effects, view.precision, ladder);
+        if self.canvas.size() != size {
+            self.canvas = Canvas::new(size);
+        }
+        let limit = FRAME_MS / context.busy.max(1) as f64;
+        let samples = settings.samples_per_side;
+        let mut passes = vec![(1, samples)];
+        if samples > 1 {
+            passes.push((1, 1));
+        }
+        let mut step = self.costs.step(size, limit);
+        let mut map = None;
+        // Before anything is measured a coarse picture is there first.
+        if step > 1 && self.costs.measured {
+            let backend = Backend::of(self.gpu, selection.tier);
+            map = self.maps.choose(backend, &self.session.preview(), size, [limit, self.costs.sample_ms])?;
+        }
+        if map.is_some() {
+            step = 1;
+        }
+        let mut coarse = Vec::new();
+        while step > 1 {
+            coarse.push((step, 1));
+            // Each step takes a fraction of the time of the next.
+            let worth_it = self.costs.forecast(size, 1) > COARSE_FIRST_MS && self.costs.prepare_ms < SLICE_MS;
+            step = if worth_it { (step / 4).max(1) } else { 1 };
+        }
+        passes.extend(coarse.into_iter().rev());
+        let problem = effects.too_deep(context.scene).or_else(|| limits::problem(context.scene, &settings, &effects));
+        if problem.is_some() {
+            // The last picture stays.
+            passes.clear();
+            self.tell = true;
+        }
+        let took = ms(start.elapsed());
+        self.job = Some(Job { version, view, settings, effects, selection, size, passes, map, took });
+        (self.pass, self.measurement, self.problem) = (None, None, problem);
+        Ok(())
+    }
+
+    /// Whether the page shows the picture that `trueray render` gives.
+    fn finished(&self) -> bool {
+        let all = self.job.as_ref().is_some_and(|job| job.passes.is_empty());
+        all && self.pass.is_none() && self.canvas.complete().is_some() && !self.is_outdated()
+    }
+}
