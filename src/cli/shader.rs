@@ -58,9 +58,9 @@ fn print(args: &Args) -> Result<(), Failure> {
     let comment = if args.spirv { ";" } else { "//" };
     let names = kernels.entry_points().join(", ");
     let text = if args.spirv {
-        kernels.spirv_text(entry).map_err(|error| Failure::new(DEVICE_LOST, error))?
+        kernels.disassembly(entry).map_err(|error| Failure::new(DEVICE_LOST, error))?
     } else {
-        kernels.wgsl(entry)
+        kernels.listing(entry)
     };
     out!(
         "{comment} {entry}, one of the kernels {names} of {} at {tier} on {}\n{text}",

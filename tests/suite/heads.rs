@@ -1,6 +1,7 @@
 //! The heads of the shaders: what they say that a file needs is what it uses, and no file is left over.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
 
 use trueray::gpu::{Kernel, Module, Places, Slots, Storage, Tables, Variant, Walk};
 use trueray::precision::Tier;
@@ -70,7 +71,7 @@ impl Declaration {
 fn files() -> BTreeMap<String, String> {
     let entries = std::fs::read_dir(root().join("shaders")).unwrap().map(|entry| entry.unwrap().path());
     let shaders = entries.filter(|path| path.extension().is_some_and(|extension| extension == "wgsl"));
-    let named = |path: std::path::PathBuf| {
+    let named = |path: PathBuf| {
         (path.file_stem().unwrap().to_str().unwrap().to_owned(), std::fs::read_to_string(&path).unwrap())
     };
     shaders.map(named).collect()
@@ -150,6 +151,59 @@ fn every_file_is_in_some_module_and_none_has_two_of_a_slot() {
     }
     let there: BTreeSet<_> = files().into_keys().map(|name| format!("shaders/{name}.wgsl")).collect();
     assert_eq!(seen, there);
+}
+
+/// The page about the shaders has the files of the plain case, and every variant.
+#[test]
+fn the_page_about_the_shaders_is_right() {
+    let page = std::fs::read_to_string(root().join("shaders/README.md")).unwrap();
+    let example = page.split("```text\n").nth(1).unwrap().split("```").next().unwrap();
+    let named: BTreeSet<_> = example.lines().flat_map(|line| line.split("  ").next().unwrap().split(", ")).collect();
+    let module = Module::render(&Variant {
+        kernel: Kernel::Tier(Tier::Fast),
+        storage: Storage::Tables(Textures::Stored),
+        places: Places::Large,
+        samples: false,
+        refraction: None,
+        slots: Slots::Tiles,
+        walk: Walk::InPlace,
+    });
+    let paths: Vec<_> = module.files().collect();
+    let names = paths.iter().filter_map(|path| path.strip_prefix("shaders/")?.strip_suffix(".wgsl"));
+    assert_eq!(named, names.collect());
+    for name in files().keys() {
+        let (slot, variant) = name.split_once('_').unwrap_or((name, name));
+        let is_told = [slot, variant].map(|part| page.contains(&format!("`{part}`")));
+        assert!(is_told == [true; 2] || page.contains(&format!("`{name}`")) || named.contains(name.as_str()), "{name}");
+    }
+}
+
+/// The texts below this file or folder of the project, with their paths.
+fn texts(path: &Path) -> Vec<(PathBuf, String)> {
+    if path.is_dir() {
+        let entries = std::fs::read_dir(path).unwrap().map(|entry| entry.unwrap().path());
+        return entries.flat_map(|entry| texts(&entry)).collect();
+    }
+    std::fs::read_to_string(path).map(|text| (path.to_owned(), text)).into_iter().collect()
+}
+
+#[test]
+fn shaders_that_texts_mention_are_there() {
+    let files = files();
+    let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '*';
+    let places = ["src", "shaders", "tests/mutations", "README.md", "PRECISION.md", "scenes/README.md"];
+    let mut count = 0;
+    for (path, text) in places.iter().flat_map(|place| texts(&root().join(place))) {
+        for (at, _) in text.match_indices(".wgsl") {
+            let name = text[..at].rsplit(|c| !is_part(c)).next().unwrap();
+            let (begin, end) = name.split_once('*').unwrap_or((name, ""));
+            let is_meant = |file: &String| file.starts_with(begin) && file.ends_with(end);
+            let exists = if name.contains('*') { files.keys().any(is_meant) } else { files.contains_key(name) };
+            assert!(exists || name.is_empty(), "{}: {name}.wgsl", path.display());
+            count += 1;
+        }
+    }
+    assert!(count > 100, "{count}");
 }
 
 /// A file that has a slot of its own has no variants, and variants are more than one.

@@ -47,7 +47,7 @@ impl Specialisation {
     }
 
     /// The WGSL of an entry point's module, and the constants that the pipeline sets.
-    pub fn wgsl(&self, entry_point: &str) -> String {
+    pub fn listing(&self, entry_point: &str) -> String {
         let mut text = String::new();
         for (name, value) in self.constants_of(entry_point) {
             let _ = writeln!(text, "// {name} = {value}");
@@ -60,7 +60,7 @@ impl Specialisation {
     /// # Errors
     ///
     /// What the compiler says, with file and line.
-    pub fn spirv_text(&self, entry_point: &str) -> Result<String, String> {
+    pub fn disassembly(&self, entry_point: &str) -> Result<String, String> {
         let module = Parsed::new(&self.module_of(entry_point))?;
         let specialised = module.specialised(entry_point, &self.constants_of(entry_point))?;
         let words = module.spirv(&specialised, entry_point)?;
