@@ -16,9 +16,10 @@ use crate::study::{Error, Event, HardCases, Plan, Skipped, Study, Subject, csv, 
 
 /// Arguments of `trueray study`.
 #[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Measurement")]
 pub(super) struct Args {
     /// Scene files; `-` is standard input
-    #[arg(required = true, value_name = "SCENE")]
+    #[arg(required = true, value_name = "SCENE", help_heading = "Scene")]
     scenes: Vec<PathBuf>,
     /// Counted runs of each point, after one warm-up
     #[arg(long, value_name = "N", default_value_t = 7, value_parser = clap::value_parser!(u32).range(1..=1000))]
@@ -39,22 +40,22 @@ pub(super) struct Args {
     /// Seed of the hard cases' random numbers
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
-    /// Write a report with plots, one HTML file that needs nothing else
-    #[arg(long, value_name = "FILE")]
-    report: Option<PathBuf>,
-    /// Write every point and run as CSV; `-` is standard output
-    #[arg(long, value_name = "FILE")]
-    csv: Option<PathBuf>,
-    /// Write everything as JSON; `-` is standard output
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
-    /// How progress is shown on standard error
-    #[arg(long, value_enum, default_value_t = Style::Auto)]
-    progress: Style,
     #[command(flatten)]
     picture: PictureOptions,
     #[command(flatten)]
     device: DeviceOptions,
+    /// Write a report with plots, one HTML file that needs nothing else
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    report: Option<PathBuf>,
+    /// Write every point and run as CSV; `-` is standard output
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    csv: Option<PathBuf>,
+    /// Write everything as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    json: Option<PathBuf>,
+    /// How progress is shown on standard error
+    #[arg(long, value_enum, default_value_t = Style::Auto, help_heading = "Output")]
+    progress: Style,
 }
 
 pub(super) fn run(args: &Args) -> u8 {
