@@ -16,15 +16,13 @@ use crate::bench::{Bench, BenchPlan, FAMILIES, Family, RenderSetup, csv, heads, 
 
 /// Arguments of `trueray bench`.
 #[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Measurement")]
 pub(super) struct Args {
     /// Families of scenes, separated by commas; `--list` says which there are
-    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = family)]
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = family, help_heading = "Scene")]
     families: Vec<&'static Family>,
-    /// List the families and their sizes, and end
-    #[arg(long)]
-    list: bool,
     /// Leave out scenes with more spheres
-    #[arg(long, value_name = "N", default_value_t = 1_000_000)]
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, help_heading = "Scene")]
     max_spheres: usize,
     /// Counted runs of each scene and renderer
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
@@ -38,18 +36,21 @@ pub(super) struct Args {
     /// Leave out the CPU reference
     #[arg(long)]
     no_cpu: bool,
-    /// Write the scenes as scene files into a folder, for other renderers, and end
-    #[arg(long, value_name = "FOLDER")]
-    write: Option<PathBuf>,
-    #[command(flatten)]
-    reports: Reports,
-    /// How progress is shown on standard error
-    #[arg(long, value_enum, default_value_t = Style::Auto)]
-    progress: Style,
     #[command(flatten)]
     picture: PictureOptions,
     #[command(flatten)]
     device: DeviceOptions,
+    /// List the families and their sizes, and end
+    #[arg(long, help_heading = "Output")]
+    list: bool,
+    /// Write the scenes as scene files into a folder, for other renderers, and end
+    #[arg(long, value_name = "FOLDER", help_heading = "Output")]
+    write: Option<PathBuf>,
+    #[command(flatten)]
+    reports: Reports,
+    /// How progress is shown on standard error
+    #[arg(long, value_enum, default_value_t = Style::Auto, help_heading = "Output")]
+    progress: Style,
 }
 
 pub(super) fn run(args: &Args) -> u8 {

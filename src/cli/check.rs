@@ -22,13 +22,13 @@ use crate::words::{count, number, visible};
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
     /// Scene files; `-` is standard input
-    #[arg(required = true, value_name = "SCENE")]
+    #[arg(required = true, value_name = "SCENE", help_heading = "Scene")]
     scenes: Vec<PathBuf>,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
     #[command(flatten)]
     picture: PictureOptions,
+    /// Print JSON
+    #[arg(long, help_heading = "Output")]
+    json: bool,
 }
 
 /// What is known of a scene without rendering it.

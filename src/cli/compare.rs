@@ -26,22 +26,13 @@ use crate::words::{count, visible};
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
     /// Two pictures (PPM or PNG), one of which may be `-` for standard input; with --scene at most one
-    #[arg(value_name = "PICTURE", num_args = 0..=2)]
+    #[arg(value_name = "PICTURE", num_args = 0..=2, help_heading = "Pictures")]
     pictures: Vec<PathBuf>,
     /// Compare with the CPU reference of this scene: the picture given, or the one that the device renders
-    #[arg(long, value_name = "SCENE")]
+    #[arg(long, value_name = "SCENE", help_heading = "Scene")]
     scene: Option<PathBuf>,
-    /// Write a picture of where and how much they differ
-    #[arg(long, value_name = "FILE")]
-    heatmap: Option<PathBuf>,
-    /// Write both pictures and the heat map side by side
-    #[arg(long, value_name = "FILE")]
-    three_wide: Option<PathBuf>,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
     /// Repair malformed pictures instead of refusing them
-    #[arg(long)]
+    #[arg(long, help_heading = "Pictures")]
     lenient: bool,
     #[command(flatten)]
     limits: LimitArgs,
@@ -49,10 +40,20 @@ pub(super) struct Args {
     picture: PictureOptions,
     #[command(flatten)]
     device: DeviceOptions,
+    /// Write a picture of where and how much they differ
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    heatmap: Option<PathBuf>,
+    /// Write both pictures and the heat map side by side
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    three_wide: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long, help_heading = "Output")]
+    json: bool,
 }
 
 /// How much may differ; without any of these, nothing may, and with --scene no pixel may be unexplained.
 #[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Limits")]
 struct LimitArgs {
     /// Pixels that may differ at all
     #[arg(long, value_name = "PIXELS")]

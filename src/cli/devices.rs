@@ -6,6 +6,7 @@ use crate::gpu::{DeviceTuning, Error, hidden, list};
 
 /// Arguments of `trueray devices`.
 #[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Output")]
 pub(super) struct Args {
     /// Print JSON
     #[arg(long)]

@@ -15,16 +15,16 @@ use crate::export::{Obstacle, Peer, export};
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
     /// Scene file; `-` is standard input
-    #[arg(value_name = "SCENE")]
+    #[arg(value_name = "SCENE", help_heading = "Scene")]
     scene: PathBuf,
-    /// The renderer: povray (3.7) or tachyon (0.99)
-    #[arg(long, value_name = "RENDERER")]
-    to: Peer,
-    /// File for it; `-`, the default, is standard output
-    #[arg(short, long, value_name = "FILE", default_value = "-")]
-    output: PathBuf,
     #[command(flatten)]
     picture: PictureOptions,
+    /// The renderer: povray (3.7) or tachyon (0.99)
+    #[arg(long, value_name = "RENDERER", help_heading = "Output")]
+    to: Peer,
+    /// File for it; `-`, the default, is standard output
+    #[arg(short, long, value_name = "FILE", default_value = "-", help_heading = "Output")]
+    output: PathBuf,
 }
 
 pub(super) fn run(args: &Args) -> u8 {

@@ -1,5 +1,6 @@
 //! The command line: one file for each subcommand.
 
+mod after_help;
 mod bench;
 mod check;
 mod color;
@@ -11,6 +12,7 @@ mod failure;
 mod files;
 mod guard;
 mod input;
+mod manual;
 mod named;
 mod options;
 mod output;
@@ -24,6 +26,7 @@ mod stats;
 mod stress;
 mod study;
 mod tune;
+mod version;
 #[cfg(feature = "view")]
 mod view;
 mod watchdog;
@@ -43,50 +46,62 @@ use crate::{threads, words};
 #[command(
     name = "trueray",
     version,
+    long_version = version::long(),
     args_conflicts_with_subcommands = true,
     subcommand_negates_reqs = true,
     arg_required_else_help = true,
-    after_help = "Exit codes: 0 ok, 2 usage, 3 scene, 4 no device, 5 device lost, 6 output, 7 no thread;\n\
-                  128 + n where signal n ended the run.\n\
-                  compare: 0 same, 1 different, 2 trouble. stress: 1 a promise is broken.\n\
-                  Environment: WGPU_ADAPTER_NAME, WGPU_POWER_PREF, WGPU_BACKEND, VK_DRIVER_FILES are honoured;\n\
-                  TRUERAY_NO_TUNING=1 ignores what `bench --tune` has kept, TRUERAY_KERNEL_CACHE=0 the kernels that\n\
-                  earlier runs have compiled; TRUERAY_PATIENCE=S gives a device up that has not answered for S seconds (120)."
+    after_help = after_help::PROGRAM
 )]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
-    /// Whether messages are coloured
-    #[arg(long, value_enum, default_value_t, global = true, value_name = "WHEN")]
-    #[allow(dead_code, reason = "read before the rest, for messages about the arguments themselves")]
-    color: color::Color,
     #[command(flatten)]
     render: render::Args,
+    /// Whether messages are coloured
+    #[arg(long, value_enum, default_value_t, global = true, value_name = "WHEN", help_heading = "Output")]
+    #[allow(dead_code, reason = "read before the rest, for messages about the arguments themselves")]
+    color: color::Color,
 }
 
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Render scenes to picture files
+    #[command(after_help = after_help::RENDER)]
     Render(render::Args),
     /// Say where and how two pictures differ, or a picture and its scene's reference
+    #[command(after_help = after_help::COMPARE)]
     Compare(compare::Args),
     /// Check scene files and summarise them, without rendering
+    #[command(after_help = after_help::CHECK)]
     Check(check::Args),
     /// Measure what accuracy and effects cost in time on a scene
+    #[command(after_help = after_help::STUDY)]
     Study(study::Args),
     /// Check on this device what each tier promises of hard cases
+    #[command(after_help = after_help::STRESS)]
     Stress(stress::Args),
     /// Measure how fast built-in scenes of growing size are rendered
+    #[command(after_help = after_help::BENCH)]
     Bench(bench::Args),
     /// Write a scene for POV-Ray or Tachyon
+    #[command(after_help = after_help::EXPORT)]
     Export(export::Args),
     /// Show a scene live in the browser
     #[cfg(feature = "view")]
+    #[command(after_help = after_help::VIEW)]
     View(view::Args),
     /// List the Vulkan devices
+    #[command(after_help = after_help::DEVICES)]
     Devices(devices::Args),
     /// Print the shader that renders a scene on a device
+    #[command(after_help = after_help::SHADER)]
     Shader(shader::Args),
+    /// Print a script that completes the command line in a shell
+    #[command(after_help = after_help::COMPLETIONS)]
+    Completions(manual::CompletionsArgs),
+    /// Print the manual page, or that of a command
+    #[command(after_help = after_help::MAN)]
+    Man(manual::ManArgs),
 }
 
 /// Runs the program with the arguments of the process.
@@ -120,6 +135,8 @@ pub fn run() -> ExitCode {
         Some(Command::View(args)) => view::run(&args),
         Some(Command::Devices(args)) => devices::run(&args),
         Some(Command::Shader(args)) => shader::run(&args),
+        Some(Command::Completions(args)) => manual::completions(&args, Cli::command()),
+        Some(Command::Man(args)) => manual::man(&args, Cli::command()),
     };
     ExitCode::from(code)
 }

@@ -17,6 +17,7 @@ use crate::viewer::{FlightScale, Pose, ViewState};
 
 /// What decides the picture besides the scene.
 #[derive(Debug, Args)]
+#[command(next_help_heading = "Picture")]
 pub(super) struct PictureOptions {
     /// Rendering rules: `classic` is what the assignment's official pictures pin, `exact` what the physics says
     #[arg(long, value_enum, default_value_t = Convention::Classic)]
@@ -51,6 +52,7 @@ pub(super) struct PictureOptions {
 
 /// The camera in place of the file's; the window stays the file's.
 #[derive(Debug, Args)]
+#[command(next_help_heading = "Camera")]
 struct CameraOptions {
     /// The eye
     #[arg(long, value_name = "X,Y,Z", default_value = "0,0,0", allow_hyphen_values = true, value_parser = vector)]
@@ -135,6 +137,7 @@ impl PictureOptions {
 
 /// Which device renders.
 #[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Device")]
 pub(super) struct DeviceOptions {
     /// auto, cpu, gpu (never falls back), an index of `trueray devices`, part of a device's name or driver, or its PCI id
     #[arg(long, value_name = "DEVICE", default_value = "auto")]

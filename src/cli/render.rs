@@ -29,14 +29,8 @@ use crate::words::{count, visible};
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
     /// Scene files; `-` is standard input
-    #[arg(required = true, value_name = "SCENE")]
+    #[arg(required = true, value_name = "SCENE", help_heading = "Scene")]
     scenes: Vec<PathBuf>,
-    /// Picture file, a folder for it, or `-` for standard output; without it the file that OUTPUT names
-    #[arg(short, long, value_name = "FILE")]
-    output: Option<PathBuf>,
-    /// File format: p6, p3 or png; without it the file name's ending decides
-    #[arg(long, value_name = "FORMAT")]
-    format: Option<Format>,
     #[command(flatten)]
     picture: PictureOptions,
     #[command(flatten)]
@@ -45,31 +39,37 @@ pub(super) struct Args {
     device: DeviceOptions,
     /// How many pixels of a device's picture the CPU reference calculates, too: a number, all, or none; without it 64, or none
     /// with more than 20,000 spheres. Where rounding does not explain a difference, there is no picture
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", help_heading = "Device")]
     verify: Option<Verify>,
+    /// Picture file, a folder for it, or `-` for standard output; without it the file that OUTPUT names
+    #[arg(short, long, value_name = "FILE", help_heading = "Output")]
+    output: Option<PathBuf>,
+    /// File format: p6, p3 or png; without it the file name's ending decides
+    #[arg(long, value_name = "FORMAT", help_heading = "Output")]
+    format: Option<Format>,
     /// Write whatever file OUTPUT names: also a hidden one, one without a picture's ending, or over a file that is no picture
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     allow_any_output: bool,
     /// Print which effects are simulated, and why
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     explain: bool,
     /// Print device, effects, rays, times and memory
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     stats: bool,
     /// Write the same as JSON; `-` is standard error
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
     stats_json: Option<PathBuf>,
     /// Leave the rays out of the statistics: counting them takes time of its own
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     no_ray_counts: bool,
     /// How progress is shown on standard error
-    #[arg(long, value_enum, default_value_t = Style::Auto)]
+    #[arg(long, value_enum, default_value_t = Style::Auto, help_heading = "Output")]
     progress: Style,
     /// Print errors only
-    #[arg(short, long)]
+    #[arg(short, long, help_heading = "Output")]
     quiet: bool,
     /// Print more: the effects and the times
-    #[arg(short, long, conflicts_with = "quiet")]
+    #[arg(short, long, conflicts_with = "quiet", help_heading = "Output")]
     verbose: bool,
 }
 

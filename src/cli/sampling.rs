@@ -5,6 +5,7 @@ use crate::sampling::{Density, Fill, Fovea, Samples};
 
 /// Which pixels are sampled; the others are filled.
 #[derive(Debug, Clone, clap::Args)]
+#[command(next_help_heading = "Sampling")]
 pub(super) struct SamplingOptions {
     /// Sample all pixels around this place and ever fewer away from it: `center`, or X,Y from the top left in parts of the
     /// picture (0.5,0.5) or in pixels (320px,240px)
@@ -13,7 +14,7 @@ pub(super) struct SamplingOptions {
     /// How far all pixels are sampled, in parts of the picture's shorter side
     #[arg(long, value_name = "R", default_value_t = 0.15, value_parser = radius, requires = "foveate", conflicts_with = "sparse")]
     fovea_radius: f64,
-    /// How far beyond that a quarter of them is, likewise
+    /// How far beyond `--fovea-radius` a quarter of the pixels is sampled, in parts of the picture's shorter side
     #[arg(long, value_name = "F", default_value_t = 0.15, value_parser = falloff, requires = "foveate", conflicts_with = "sparse")]
     falloff: f64,
     /// The part of the pixels that is sampled far away from the place, above 0

@@ -2,25 +2,25 @@
 
 use std::path::PathBuf;
 
-use super::failure::{DEVICE_LOST, Failure, OK, USAGE};
+use super::failure::{Failure, OK, USAGE};
 use super::input::Loaded;
 use super::options::{DeviceOptions, PictureOptions, open_device};
 use super::output::out;
 use super::sampling::SamplingOptions;
-use crate::gpu::{GpuRenderer, Options, Pixels, Rows, Specialisation};
+use crate::gpu::{Error, GpuRenderer, Options, Pixels, Rows, Specialisation};
 use crate::words::visible;
 
 /// Arguments of `trueray shader`.
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
     /// Scene file; `-` is standard input
-    #[arg(value_name = "SCENE")]
+    #[arg(value_name = "SCENE", help_heading = "Scene")]
     scene: PathBuf,
     /// The kernel, by its entry point; without it the one that casts the primary rays
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", help_heading = "Output")]
     entry: Option<String>,
     /// Print the SPIR-V that the driver gets, disassembled, with the bindings' numbers of the WGSL
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     spirv: bool,
     #[command(flatten)]
     picture: PictureOptions,
@@ -57,11 +57,7 @@ fn print(args: &Args) -> Result<(), Failure> {
     let entry = chosen(args.entry.as_deref(), &kernels)?;
     let comment = if args.spirv { ";" } else { "//" };
     let names = kernels.entry_points().join(", ");
-    let text = if args.spirv {
-        kernels.disassembly(entry).map_err(|error| Failure::new(DEVICE_LOST, error))?
-    } else {
-        kernels.listing(entry)
-    };
+    let text = if args.spirv { kernels.disassembly(entry).map_err(Error::Shader)? } else { kernels.listing(entry) };
     out!(
         "{comment} {entry}, one of the kernels {names} of {} at {tier} on {}\n{text}",
         visible(&loaded.name),

@@ -18,26 +18,17 @@ use crate::stress::{Class, Row, Verdict, classes, cost, run as run_classes, tabl
 
 /// Arguments of `trueray stress`.
 #[derive(Debug, clap::Args)]
-#[command(
-    after_help = "Each kernel is checked against double-double truth for the very numbers that it got, and judged by \
-                        what its tier promises. schoolbook (judged as fast) and no-barrier (judged as robust) are what goes \
-                        wrong without care; they run only when asked for by name, and then count like the others.\n\
-                        Exit codes: 0 every promise holds, 1 one is broken on this device, 2 usage, 4 no device or none that \
-                        has the kernel, 5 device lost."
-)]
+#[command(next_help_heading = "Measurement")]
 pub(super) struct Args {
-    /// List the classes
-    #[arg(long)]
-    list: bool,
+    /// Vulkan device: auto, gpu, an index of `trueray devices`, part of a name or driver, or a PCI id
+    #[arg(long, value_name = "DEVICE", default_value = "auto", help_heading = "Device")]
+    device: Choice,
+    /// Kernels: fast, robust, double, all (these three), schoolbook, no-barrier
+    #[arg(long, value_name = "KERNEL", value_delimiter = ',', default_value = "all", help_heading = "Device")]
+    precision: Vec<Selected>,
     /// Classes by name or number; all without it
     #[arg(long, value_name = "NAME|ID", value_delimiter = ',')]
     class: Vec<String>,
-    /// Kernels: fast, robust, double, all (these three), schoolbook, no-barrier
-    #[arg(long, value_name = "KERNEL", value_delimiter = ',', default_value = "all")]
-    precision: Vec<Selected>,
-    /// Vulkan device: auto, gpu, an index of `trueray devices`, part of a name or driver, or a PCI id
-    #[arg(long, value_name = "DEVICE", default_value = "auto")]
-    device: Choice,
     /// Rays of each case
     #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u32).range(64..=10_000_000))]
     count: u32,
@@ -47,11 +38,14 @@ pub(super) struct Args {
     /// Measure instead what a ray-ellipsoid test costs on each kernel, in turn, this many times
     #[arg(long, value_name = "RUNS", value_parser = clap::value_parser!(u32).range(1..=1000))]
     time: Option<u32>,
+    /// List the classes
+    #[arg(long, help_heading = "Output")]
+    list: bool,
     /// Print JSON
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     json: bool,
     /// How progress is shown on standard error
-    #[arg(long, value_enum, default_value_t = Style::Auto)]
+    #[arg(long, value_enum, default_value_t = Style::Auto, help_heading = "Output")]
     progress: Style,
 }
 

@@ -17,9 +17,10 @@ use crate::study::{Error, Event, HardCases, Skipped, Study, StudyInput, StudyPla
 
 /// Arguments of `trueray study`.
 #[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Measurement")]
 pub(super) struct Args {
     /// Scene files; `-` is standard input
-    #[arg(required = true, value_name = "SCENE")]
+    #[arg(required = true, value_name = "SCENE", help_heading = "Scene")]
     scenes: Vec<PathBuf>,
     /// Counted runs of each point, after one warm-up
     #[arg(long, value_name = "N", default_value_t = 7, value_parser = clap::value_parser!(u32).range(1..=1000))]
@@ -41,14 +42,14 @@ pub(super) struct Args {
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
     #[command(flatten)]
-    reports: Reports,
-    /// How progress is shown on standard error
-    #[arg(long, value_enum, default_value_t = Style::Auto)]
-    progress: Style,
-    #[command(flatten)]
     picture: PictureOptions,
     #[command(flatten)]
     device: DeviceOptions,
+    #[command(flatten)]
+    reports: Reports,
+    /// How progress is shown on standard error
+    #[arg(long, value_enum, default_value_t = Style::Auto, help_heading = "Output")]
+    progress: Style,
 }
 
 pub(super) fn run(args: &Args) -> u8 {

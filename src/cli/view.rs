@@ -16,17 +16,17 @@ use crate::viewer::{RenderLoop, SceneFile, Server, watch};
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
     /// Scene file; it is read again whenever it changes
-    #[arg(value_name = "SCENE")]
+    #[arg(value_name = "SCENE", help_heading = "Scene")]
     scene: PathBuf,
     #[command(flatten)]
     picture: PictureOptions,
     #[command(flatten)]
     device: DeviceOptions,
     /// Where the page is served; port 0 is any free one
-    #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:0")]
+    #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:0", help_heading = "Device")]
     listen: SocketAddr,
     /// Print errors only, the address, and whether it is served to the network
-    #[arg(short, long)]
+    #[arg(short, long, help_heading = "Output")]
     quiet: bool,
 }
 

@@ -179,7 +179,7 @@ scene_of() { # file
     done
 }
 
-echo "$("$trueray" --version), $res, $threads threads, precision $precision, $runs runs, medians in ms (least … greatest)"
+echo "$("$trueray" -V), $res, $threads threads, precision $precision, $runs runs, medians in ms (least … greatest)"
 for peer in $peers; do
     case $peer in
     povray) povray --version 2>&1 | sed -n 's/^\(POV-Ray [0-9.a-z]*\).*/\1/p' | head -n 1 ;;

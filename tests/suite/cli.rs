@@ -526,3 +526,104 @@ fn a_shader_that_is_not_there_is_refused_with_those_that_are() {
         assert_exit(&place.run("shader --spp 4 --entry walk_paths scene.txt"), 2, message);
     }
 }
+
+fn stdout(output: Output) -> String {
+    assert_exit(&output, 0, "");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// The commands that `--help` lists.
+fn commands(place: &Folder) -> Vec<String> {
+    let help = stdout(place.run("--help"));
+    let lines = help.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
+    let names = lines.map(|line| line.split_whitespace().next().unwrap().to_owned());
+    names.filter(|name| name != "help").collect()
+}
+
+/// Whether every option of an example is there and has a value of its kind: `--help` at its end is what is carried out.
+#[test]
+fn each_command_has_two_examples_that_are_understood() {
+    let place = Folder::new(SCENE);
+    let commands = commands(&place);
+    assert!(commands.len() > 8, "{commands:?}");
+    for command in commands {
+        let help = stdout(place.run(&format!("{command} --help")));
+        let examples = help.lines().skip_while(|line| *line != "Examples:").skip(1).take_while(|line| !line.is_empty());
+        let examples: Vec<_> = examples.map(str::trim).collect();
+        assert_eq!(examples.len(), 2, "{command}: {help}");
+        for example in examples {
+            let arguments = example.strip_prefix("trueray ").unwrap().split(" > ").next().unwrap();
+            assert!(arguments.split(' ').next() == Some(command.as_str()), "{example}");
+            assert!(stdout(place.run(&format!("{arguments} --help"))) == help, "{example}");
+        }
+    }
+}
+
+/// Nothing is left for the group without a subject but what every program has.
+#[test]
+fn options_stand_in_groups() {
+    let place = Folder::new(SCENE);
+    let groups = |command: &str| {
+        let help = stdout(place.run(&format!("{command} -h")));
+        let mut groups: Vec<(String, Vec<String>)> = Vec::new();
+        for line in help.lines().take_while(|line| *line != "Examples:") {
+            if let Some(heading) = line.strip_suffix(':').filter(|line| !line.starts_with(' ')) {
+                groups.push((heading.to_owned(), Vec::new()));
+            } else if let (Some((_, options)), Some(at)) = (groups.last_mut(), line.find("--")) {
+                options.push(line[at + 2..].split([' ', '=']).next().unwrap().to_owned());
+            }
+        }
+        groups
+    };
+    let render = groups("render");
+    let headings: Vec<_> = render.iter().map(|(heading, _)| heading.as_str()).collect();
+    let expected = ["Options", "Scene", "Picture", "Camera", "Sampling", "Device", "Output"];
+    assert_eq!(headings, expected);
+    for (heading, option) in [(2, "res"), (3, "eye"), (4, "foveate"), (5, "device"), (6, "output"), (6, "color")] {
+        assert!(render[heading].1.iter().any(|other| other == option), "{option}: {render:?}");
+    }
+    for command in commands(&place) {
+        let groups = groups(&command);
+        let options = &groups.iter().find(|(heading, _)| heading == "Options").unwrap().1;
+        assert_eq!(options, &["help"], "{command}");
+    }
+}
+
+/// Without any driver: no device is looked for.
+#[test]
+fn the_version_is_short_and_long() {
+    let place = Folder::new(SCENE);
+    let version = env!("CARGO_PKG_VERSION");
+    assert_eq!(stdout(place.run_without_driver("-V")), format!("trueray {version}\n"));
+    let long = stdout(place.run_without_driver("--version"));
+    assert!(long.starts_with(&format!("trueray {version}\ncommit ")), "{long}");
+    for part in [std::env::consts::OS, std::env::consts::ARCH, "features "] {
+        assert!(long.contains(part), "{part} in {long}");
+    }
+}
+
+#[test]
+fn completions_know_every_command_in_every_shell() {
+    let place = Folder::new(SCENE);
+    for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
+        let script = stdout(place.run_without_driver(&format!("completions {shell}")));
+        for command in commands(&place) {
+            assert!(script.contains(&command), "{command} for {shell}");
+        }
+        assert!(script.contains("look-at"), "{shell}");
+    }
+    assert_exit(&place.run("completions tcsh"), 2, "tcsh");
+}
+
+#[test]
+fn every_command_has_a_manual_page() {
+    let place = Folder::new(SCENE);
+    let page = stdout(place.run_without_driver("man"));
+    assert!(page.contains(".TH trueray 1") && page.contains("Exit codes"), "{page}");
+    for command in commands(&place) {
+        assert!(page.contains(&format!("trueray\\-{command}(1)")), "{command} in {page}");
+        let page = stdout(place.run_without_driver(&format!("man {command}")));
+        assert!(page.contains(&format!(".TH trueray-{command} 1")) && page.contains("Examples:"), "{page}");
+    }
+    assert_exit(&place.run("man walk"), 2, "there is no command `walk`");
+}

@@ -161,12 +161,13 @@ fn the_page_about_the_shaders_is_right() {
     let named: BTreeSet<_> = example.lines().flat_map(|line| line.split("  ").next().unwrap().split(", ")).collect();
     let module = Module::render(&Variant {
         kernel: Kernel::Tier(Tier::Fast),
-        storage: Storage::Tables(Textures::Stored),
+        storage: Storage::Tables(Tables::Stored),
         places: Places::Large,
         samples: false,
         refraction: None,
         slots: Slots::Tiles,
         walk: Walk::InPlace,
+        dispatch_tiles: 8,
     });
     let paths: Vec<_> = module.files().collect();
     let names = paths.iter().filter_map(|path| path.strip_prefix("shaders/")?.strip_suffix(".wgsl"));

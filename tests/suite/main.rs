@@ -13,6 +13,7 @@ mod claims;
 mod cli;
 mod compare;
 mod coverage;
+mod documents;
 mod doubts;
 mod drivers;
 mod effects;

@@ -1,0 +1,81 @@
+//! What stands below the options of each command: two examples, and what else there is to know.
+
+pub(super) const PROGRAM: &str = "\
+Examples:
+  trueray scene.txt
+  trueray render scene.txt -o scene.png
+
+Exit codes: 0 ok, 2 usage, 3 scene, 4 no device, 5 device lost, 6 output, 7 no thread; \
+128 + n where signal n ended the run. compare: 0 same, 1 different, 2 trouble. stress: 1 a promise is broken.
+
+Environment: WGPU_ADAPTER_NAME, WGPU_POWER_PREF, WGPU_BACKEND, VK_DRIVER_FILES are honoured; \
+TRUERAY_NO_TUNING=1 ignores what `bench --tune` has kept, TRUERAY_KERNEL_CACHE=0 the kernels that \
+earlier runs have compiled; TRUERAY_PATIENCE=S gives a device up that has not answered for S seconds (120).";
+
+pub(super) const RENDER: &str = "\
+Examples:
+  trueray render scene.txt -o scene.png
+  trueray render --convention exact --spp 16 --res 1920x1080 --stats scene.txt -o large.png";
+
+pub(super) const COMPARE: &str = "\
+Examples:
+  trueray compare --scene scene.txt mine.ppm
+  trueray compare mine.ppm theirs.png --heatmap difference.png";
+
+pub(super) const CHECK: &str = "\
+Examples:
+  trueray check scenes/effects/*.txt
+  trueray check --json --convention exact scene.txt";
+
+pub(super) const STUDY: &str = "\
+Examples:
+  trueray study scene.txt --report study.html
+  trueray study --spp-list 1,4 --depths 0,1,2 --hard-cases 0 scene.txt --csv points.csv";
+
+pub(super) const STRESS: &str = "\
+Examples:
+  trueray stress
+  trueray stress --class far,secondary --precision robust --json
+
+Each kernel is checked against double-double truth for the very numbers that it got, and judged by what its \
+tier promises. schoolbook (judged as fast) and no-barrier (judged as robust) are what goes wrong without care; \
+they run only when asked for by name, and then count like the others.
+
+Exit codes: 0 every promise holds, 1 one is broken on this device, 2 usage, 4 no device or none that has the \
+kernel, 5 device lost.";
+
+pub(super) const BENCH: &str = "\
+Examples:
+  trueray bench --families spheres --max-spheres 10000 --report bench.html
+  trueray bench --tune";
+
+pub(super) const EXPORT: &str = "\
+Examples:
+  trueray export scene.txt --to povray -o scene.pov
+  trueray export --convention exact --res 640x480 scene.txt --to tachyon";
+
+#[cfg(feature = "view")]
+pub(super) const VIEW: &str = "\
+Examples:
+  trueray view scene.txt
+  trueray view --convention exact --precision fast --listen 127.0.0.1:8080 scene.txt";
+
+pub(super) const DEVICES: &str = "\
+Examples:
+  trueray devices
+  trueray devices --json";
+
+pub(super) const COMPLETIONS: &str = "\
+Examples:
+  trueray completions bash > ~/.local/share/bash-completion/completions/trueray
+  trueray completions fish > ~/.config/fish/completions/trueray.fish";
+
+pub(super) const MAN: &str = "\
+Examples:
+  trueray man > trueray.1
+  trueray man render > trueray-render.1";
+
+pub(super) const SHADER: &str = "\
+Examples:
+  trueray shader scene.txt > scene.wgsl
+  trueray shader --precision robust --spirv scene.txt > scene.spvasm";

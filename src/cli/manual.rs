@@ -1,0 +1,55 @@
+//! `trueray completions` and `trueray man`: both come from the command line's own definition.
+
+use clap::Command;
+use clap_complete::Shell;
+use clap_mangen::Man;
+
+use super::failure::{Failure, OK, OUTPUT, USAGE};
+use super::output::out;
+
+/// Arguments of `trueray completions`.
+#[derive(Debug, clap::Args)]
+pub(super) struct CompletionsArgs {
+    /// The shell that reads the script
+    #[arg(value_enum)]
+    shell: Shell,
+}
+
+/// Arguments of `trueray man`.
+#[derive(Debug, clap::Args)]
+pub(super) struct ManArgs {
+    /// The command whose page it is; without one the program's own
+    #[arg(value_name = "COMMAND")]
+    command: Option<String>,
+}
+
+pub(super) fn completions(args: &CompletionsArgs, mut cli: Command) -> u8 {
+    let mut script = Vec::new();
+    clap_complete::generate(args.shell, &mut cli, "trueray", &mut script);
+    out!("{}", String::from_utf8_lossy(&script));
+    OK
+}
+
+pub(super) fn man(args: &ManArgs, cli: Command) -> u8 {
+    match page(args, cli) {
+        Ok(page) => {
+            out!("{page}");
+            OK
+        }
+        Err(failure) => failure.report(),
+    }
+}
+
+fn page(args: &ManArgs, mut cli: Command) -> Result<String, Failure> {
+    // Only then do commands know their full names and the options that all share.
+    cli.build();
+    let command = match &args.command {
+        None => &cli,
+        Some(name) => cli
+            .find_subcommand(name)
+            .ok_or_else(|| Failure::new(USAGE, format!("there is no command `{name}`; `trueray --help` lists them")))?,
+    };
+    let mut page = Vec::new();
+    Man::new(command.clone()).render(&mut page).map_err(|error| Failure::new(OUTPUT, error.to_string()))?;
+    Ok(String::from_utf8_lossy(&page).into_owned())
+}
