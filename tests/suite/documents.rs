@@ -24,16 +24,31 @@ fn documents() -> Vec<(PathBuf, String)> {
     files.into_iter().map(|file| (file.clone(), std::fs::read_to_string(&file).unwrap())).collect()
 }
 
+/// Where a link to a heading leads to, as GitHub names it.
+fn anchor(heading: &str) -> String {
+    let kept = heading.trim().chars().filter(|c| c.is_alphanumeric() || [' ', '-', '_'].contains(c));
+    kept.collect::<String>().to_lowercase().replace(' ', "-")
+}
+
 #[test]
-fn links_lead_to_files() {
+fn links_lead_to_files_and_headings() {
     let mut links = 0;
     for (file, text) in documents() {
-        for after in text.split("](").skip(1) {
-            let target = after.split([')', '#']).next().unwrap();
-            if !target.is_empty() && !target.contains("://") {
-                links += 1;
-                assert!(file.parent().unwrap().join(target).exists(), "{}: {target}", file.display());
+        let targets = text.split("](").skip(1).map(|after| after.split(')').next().unwrap());
+        for target in targets.filter(|target| !target.contains("://")) {
+            let (name, heading) = target.split_once('#').unwrap_or((target, ""));
+            let there = if name.is_empty() { file.clone() } else { file.parent().unwrap().join(name) };
+            assert!(there.exists(), "{}: {target}", file.display());
+            if !heading.is_empty() {
+                let text = std::fs::read_to_string(there).unwrap();
+                let mut headings = text.lines().filter(|line| line.starts_with('#'));
+                assert!(
+                    headings.any(|line| anchor(line.trim_start_matches('#')) == heading),
+                    "{}: {target}",
+                    file.display()
+                );
             }
+            links += 1;
         }
     }
     assert!(links > 100, "{links}");
@@ -56,6 +71,17 @@ fn commands_are_understood() {
         }
     }
     assert!(commands > 10, "{commands}");
+}
+
+/// Modules of the suite, but for what others share, are in the table of kinds.
+#[test]
+fn every_kind_of_test_is_explained() {
+    let read = |name: &str| std::fs::read_to_string(root().join("tests").join(name)).unwrap();
+    let (table, suite) = (read("README.md"), read("suite/main.rs"));
+    let modules = suite.lines().filter_map(|line| line.strip_prefix("mod ")?.strip_suffix(';'));
+    for module in modules.filter(|module| !["families", "support"].contains(module)) {
+        assert!(table.contains(&format!("`{module}`")), "{module}");
+    }
 }
 
 /// Who opens the project for the first time reads it to its end.
