@@ -1,6 +1,6 @@
 // A walk through the grid from cell to cell (Amanatides, Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing", 1987), in turns:
 // each tests a sphere, takes a step, or both, so that lanes with long and with short lists do not wait for each other.
-// needs: counters, distance, entry, intersect, ray, real, scene, search, types
+// needs: counters, distance, entry, intersect, ray, real, search, tables, types
 // host: WALK_SLACK
 
 struct Walk {

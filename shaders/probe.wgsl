@@ -21,7 +21,7 @@ fn probe_own(words: vec4<u32>) -> Own {
     end_of_range = words.y;
     var own = Own(NO_SHAPE, false, vec3r());
     if words.w != 0u {
-        own.shape = shapes[words.w - 1u].index;
+        own.shape = shape_of(words.w - 1u).index;
     }
     return own;
 }

@@ -88,3 +88,11 @@ fn light_of(index: u32) -> Light {
     }
     return light;
 }
+
+fn low_light_of(index: u32) -> Light {
+    return low_light_at(index);
+}
+
+fn window_at(index: u32) -> vec3r {
+    return window_entry_at(index).xyz;
+}

@@ -1,5 +1,5 @@
 // The nearest hit and any hit among those spheres that a ray can meet; read it beside src/accel and src/cpu/intersect.rs.
-// needs: body, counters, distance, effects, intersect, kernel, ray, real, scene, tables, types
+// needs: body, counters, distance, effects, intersect, kernel, ray, real, tables, types
 // host: REACH
 
 // The nearer of a hit and the intersection with one more sphere; of equal ones the lower index.

@@ -43,8 +43,8 @@ fn light_at(index: u32) -> Light {
     return lights[index];
 }
 
-fn window_at(index: u32) -> vec3r {
-    return window[index].xyz;
+fn window_entry_at(index: u32) -> vec4r {
+    return window[index];
 }
 
 fn low_shape_at(sphere: u32) -> vec4r {
@@ -55,7 +55,7 @@ fn low_shape_end_at(sphere: u32) -> ShapeEnd {
     return shape_ends_low[sphere];
 }
 
-fn low_light_of(index: u32) -> Light {
+fn low_light_at(index: u32) -> Light {
     return lights_low[index];
 }
 

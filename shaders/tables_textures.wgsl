@@ -36,8 +36,8 @@ fn light_at(index: u32) -> Light {
     return Light(vector_at(lights, 2u * index).xyz, vector_at(lights, 2u * index + 1u).xyz);
 }
 
-fn window_at(index: u32) -> vec3r {
-    return vector_at(window, index).xyz;
+fn window_entry_at(index: u32) -> vec4r {
+    return vector_at(window, index);
 }
 
 fn low_shape_at(sphere: u32) -> vec4r {
@@ -48,7 +48,7 @@ fn low_shape_end_at(sphere: u32) -> ShapeEnd {
     return ShapeEnd(vector_at(shape_ends_low, sphere).xyz, bits_at(shape_ends_low, sphere));
 }
 
-fn low_light_of(index: u32) -> Light {
+fn low_light_at(index: u32) -> Light {
     return Light(vector_at(lights_low, 2u * index).xyz, vector_at(lights_low, 2u * index + 1u).xyz);
 }
 

@@ -77,5 +77,5 @@ Examples:
 
 pub(super) const SHADER: &str = "\
 Examples:
-  trueray shader scene.txt > scene.wgsl
-  trueray shader --precision robust --spirv scene.txt > scene.spvasm";
+  trueray shader scene.txt
+  trueray shader --precision robust --spirv scene.txt > kernel.spvasm";

@@ -1,8 +1,8 @@
 //! What can be done for a picture before there is a device to do it on: opening one takes longer than reading most scenes.
 
-use super::shader::{Kernel, Tables, Variant};
 use super::specialisation::Specialisation;
 use super::spirv::Parsed;
+use super::variant::{Kernel, Tables, Variant};
 use crate::accel::Acceleration;
 use crate::effects::Effects;
 use crate::geometry::in_range;

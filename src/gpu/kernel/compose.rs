@@ -3,7 +3,7 @@
 
 use std::borrow::Cow;
 
-use super::shader::{Kernel, Places, Slots, Storage, Tables, Variant, Walk};
+use super::variant::{Kernel, Places, Slots, Storage, Tables, Variant, Walk};
 use crate::brightness::Scalar;
 use crate::gpu::shared::declaration;
 use crate::precision::Tier;

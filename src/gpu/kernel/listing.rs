@@ -6,10 +6,11 @@ use rspirv::binary::Disassemble;
 use rspirv::dr;
 
 use super::compose::Part;
-use super::pipeline::{BEGIN_BOUNCE, RESOLVE, SEE_SAMPLES, SEE_TILES, SHADE_PATHS, WALK_PATHS};
-use super::shader::{Module, Slots, Walk};
+use super::entry::{BEGIN_BOUNCE, RESOLVE, SEE_SAMPLES, SEE_TILES, SHADE_PATHS, WALK_PATHS};
+use super::module::Module;
 use super::specialisation::Specialisation;
 use super::spirv::Parsed;
+use super::variant::{Slots, Walk};
 
 impl Module {
     /// The text with a line before each part that names its file and the slot that this fills.

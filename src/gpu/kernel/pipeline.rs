@@ -1,26 +1,14 @@
 //! The kernels of a picture, compiled side by side.
 
 use super::compiler::Compiler;
-use super::shader::{Module, Slots, Walk};
+use super::entry::{BEGIN_BOUNCE, RESOLVE, SEE_SAMPLES, SEE_TILES, SHADE_PATHS, WALK_PATHS};
+use super::module::Module;
 use super::specialisation::Specialisation;
 use super::spirv::Parsed;
 use super::stage::Stage;
+use super::variant::{Slots, Walk};
 use crate::gpu::device::error::Error;
 use crate::threads::at_once;
-
-/// The entry point that casts the primary rays of tiles.
-pub const SEE_TILES: &str = "see_tiles";
-/// The entry point that casts the primary rays of a list of pixels.
-pub const SEE_SAMPLES: &str = "see_samples";
-/// The entry point that casts the reflection rays of paths.
-pub const WALK_PATHS: &str = "walk_paths";
-
-/// The entry point that shades what they have met, where several share an invocation.
-pub const SHADE_PATHS: &str = "shade_paths";
-/// The entry point that goes before each bounce of paths.
-pub(super) const BEGIN_BOUNCE: &str = "begin_bounce";
-/// The entry point that makes pixels of samples.
-pub(super) const RESOLVE: &str = "resolve";
 
 /// The kernels of a bounce of the paths.
 #[derive(Debug)]

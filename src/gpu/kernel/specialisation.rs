@@ -2,8 +2,9 @@
 
 use std::num::NonZeroU32;
 
-use super::pipeline::{BEGIN_BOUNCE, RESOLVE};
-use super::shader::{Kernel, Module, Places, Slots, Storage, Tables, Variant, Walk};
+use super::entry::{BEGIN_BOUNCE, RESOLVE};
+use super::module::Module;
+use super::variant::{Kernel, Places, Slots, Storage, Tables, Variant, Walk};
 use crate::accel::Grid;
 use crate::effects::{Effect, EffectSet, Effects};
 use crate::gpu::shared::{UNIFORM, dispatch_tiles};

@@ -18,8 +18,8 @@ use rspirv::dr::{self, Operand};
 use rspirv::spirv::{Decoration, Op};
 
 use super::inline::inline_calls;
+use super::module::Module;
 use super::products::expand_products;
-use super::shader::Module;
 
 /// A module that is parsed.
 #[derive(Debug)]

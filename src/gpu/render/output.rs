@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::gpu::kernel::shader::Slots;
+use crate::gpu::kernel::variant::Slots;
 
 /// What a renderer renders: [`Rows`] or [`Pixels`].
 pub trait Output: fmt::Debug + sealed::Sealed {

@@ -42,7 +42,8 @@ impl TileWords {
 mod tests {
     use super::super::STAGE_SIZE;
     use super::*;
-    use crate::gpu::{Kernel, Module, Places, Slots, Storage, Tables, Variant, Walk};
+    use crate::gpu::kernel::module::Module;
+    use crate::gpu::kernel::variant::{Kernel, Places, Slots, Storage, Tables, Variant, Walk};
     use crate::precision::Tier;
 
     #[test]

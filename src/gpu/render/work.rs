@@ -7,9 +7,9 @@ use crate::gpu::device::readable::Readable;
 use crate::gpu::device::upload::small_buffer;
 use crate::gpu::facade::Gpu;
 use crate::gpu::kernel::pipeline::Stages;
-use crate::gpu::kernel::shader::{Slots, Walk};
 use crate::gpu::kernel::specialisation::Specialisation;
 use crate::gpu::kernel::stage::{Resource, Stage};
+use crate::gpu::kernel::variant::{Slots, Walk};
 use crate::gpu::shared::WORKGROUP_WORDS;
 use crate::gpu::table::bind::empty_table;
 

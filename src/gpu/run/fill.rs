@@ -9,7 +9,7 @@ use crate::gpu::device::readable::Readable;
 use crate::gpu::device::upload::small_buffer;
 use crate::gpu::facade::Gpu;
 use crate::gpu::kernel::compiler::Compiler;
-use crate::gpu::kernel::shader::Module;
+use crate::gpu::kernel::module::Module;
 use crate::gpu::kernel::spirv::Parsed;
 use crate::gpu::kernel::stage::{Resource, Stage};
 use crate::gpu::shared::SMALL_GROUP;
