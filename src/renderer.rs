@@ -7,7 +7,7 @@ use crate::cpu::Reference;
 use crate::effects::Effects;
 use crate::engine::{Backend, Engine, Options, render_picture};
 use crate::film::{OutputError, Picture, PictureError, ReadError};
-use crate::gpu::{self, Choice, Gpu};
+use crate::gpu::{self, Choice, Gpu, USUAL_KERNELS};
 use crate::limits;
 use crate::misuse::Misuse;
 use crate::precision::{Request, Selection, Tier};
@@ -59,7 +59,7 @@ impl Renderer {
         let gpu = match choice {
             Choice::Cpu => None,
             Choice::Auto if gpu::list()?.is_empty() => None,
-            choice => Some(Gpu::open(&choice)?.keeping_kernels()),
+            choice => Some(Gpu::open(&choice)?.keeping_kernels(USUAL_KERNELS)),
         };
         Ok(Self { gpu, precision: Request::default(), verify: None })
     }

@@ -7,7 +7,7 @@ use super::files::{command, save_json};
 use super::options::{DeviceOptions, PictureOptions, open_device};
 use super::output::out;
 use crate::bench::{TunePlan, tune};
-use crate::gpu::{Choice, Gpu};
+use crate::gpu::{Choice, Gpu, USUAL_KERNELS};
 use crate::scene::Scene;
 use crate::tuning::save;
 use crate::words::count;
@@ -27,7 +27,7 @@ pub(super) fn run_tune(
         Choice::Auto => &Choice::Gpu,
         choice => choice,
     };
-    let mut gpu = open_device(choice)?.keeping_kernels();
+    let mut gpu = open_device(choice)?.keeping_kernels(USUAL_KERNELS);
     let settings = picture.settings()?;
     let plan = TunePlan {
         max_spheres,

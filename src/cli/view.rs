@@ -9,6 +9,7 @@ use super::input::Loaded;
 use super::options::{DeviceOptions, PictureOptions};
 use super::output::{errln, outln};
 use crate::gpu;
+use crate::gpu::USUAL_KERNELS;
 use crate::threads::{at_once, is_alone};
 use crate::viewer::{RenderLoop, SceneFile, Server, watch};
 
@@ -67,7 +68,7 @@ fn view(args: &Args) -> Result<(), Failure> {
     let mut opened = Some(gpu);
     let mut open = move || -> Result<_, gpu::Error> {
         let gpu = opened.take().map_or_else(|| device.open_with(true), Ok)?;
-        Ok(gpu.map(|gpu| Arc::new(gpu.keeping_kernels().interactive())))
+        Ok(gpu.map(|gpu| Arc::new(gpu.keeping_kernels(USUAL_KERNELS).interactive())))
     };
     std::thread::Builder::new().name("render".into()).spawn(move || rendering.run(&mut open)).map_err(no_thread)?;
     // All is there that can be refused: who reads this may open it.

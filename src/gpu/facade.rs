@@ -1,5 +1,6 @@
 //! What renders: a device, what is tuned to it, and its kernels.
 
+use std::num::NonZero;
 use std::sync::Arc;
 
 use super::device::choose::Choice;
@@ -18,6 +19,9 @@ use super::tuned::DeviceTuning;
 use crate::misuse::Misuse;
 use crate::precision::Tier;
 use crate::tuning::Tuning;
+
+/// Specialisations whose kernels are kept by whoever shows one scene after the other.
+pub const USUAL_KERNELS: NonZero<usize> = NonZero::new(16).expect("it is not 0");
 
 /// An open device that renders.
 #[derive(Debug)]
@@ -84,11 +88,11 @@ impl Gpu {
         Self { kernels: self.kernels.having(ahead), ..self }
     }
 
-    /// From now on renderers share the kernels that they compile: for whoever renders many pictures and measures no
+    /// From now on renderers share the kernels that they compile, for `most` specialisations at the most: for whoever renders many pictures and measures no
     /// compilation.
     #[must_use]
-    pub fn keeping_kernels(self) -> Self {
-        Self { kernels: self.kernels.keeping(), ..self }
+    pub fn keeping_kernels(self, most: NonZero<usize>) -> Self {
+        Self { kernels: self.kernels.keeping(most.get()), ..self }
     }
 
     /// From now on no dispatch is long: for whoever may change their mind.

@@ -19,7 +19,7 @@ pub use device::info::{DeviceInfo, DeviceKind};
 pub use device::mask::Mask;
 pub use device::open::Device;
 pub use device::{calls, drivers};
-pub use facade::Gpu;
+pub use facade::{Gpu, USUAL_KERNELS};
 pub use kernel::ahead::Ahead;
 pub use kernel::cache as kernel_cache;
 pub use kernel::entry::{SEE_SAMPLES, SEE_TILES, SHADE_PATHS, WALK_PATHS};

@@ -13,7 +13,7 @@ use trueray::stress::Random;
 use trueray::tuning::Tuning;
 use trueray::verify::Verify;
 
-use crate::support::scene_of;
+use crate::support::{KEPT, scene_of};
 
 /// Kinds of scenes, each with its own difficulty.
 const KINDS: u64 = 15;
@@ -142,7 +142,7 @@ fn the_reference_leaves_out_nothing() {
 fn the_device_leaves_out_nothing_at_any_tier() {
     let Some(_shared) = crate::support::gpu("the_device_leaves_out_nothing_at_any_tier") else { return };
     // Hundreds of pictures with few kinds of kernels.
-    let mut gpu = Gpu::open(&Choice::Auto).unwrap().keeping_kernels();
+    let mut gpu = Gpu::open(&Choice::Auto).unwrap().keeping_kernels(KEPT);
     let at_once = Tuning { in_place_below: 0.0, in_turn_from: 1e9, ..gpu.tuned().tuning };
     let in_place = Tuning { in_place_below: 1e9, ..at_once };
     let in_turn = Tuning { in_turn_from: 0.0, paths: 5, ..at_once };

@@ -16,7 +16,7 @@ use trueray::view::View;
 
 use trueray::accel::Rounding;
 
-use crate::support::{cpu_picture, gpu, gpu_picture, scaled, scene, scene_files, scene_of};
+use crate::support::{KEPT, cpu_picture, gpu, gpu_picture, scaled, scene, scene_files, scene_of};
 
 /// All tiers that the device has.
 fn kernels(gpu: &Gpu) -> Vec<Kernel> {
@@ -50,7 +50,7 @@ fn device(gpu: &Gpu, kernel: Kernel, scene: &Scene, settings: &Settings, roundin
 /// The one device, with kernels that are kept from picture to picture.
 fn keeping_gpu(test: &str) -> Option<Gpu> {
     drop(gpu(test)?);
-    Some(Gpu::open(&Choice::Gpu).unwrap().keeping_kernels())
+    Some(Gpu::open(&Choice::Gpu).unwrap().keeping_kernels(KEPT))
 }
 
 /// How many pixels differ.

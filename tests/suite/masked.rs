@@ -13,7 +13,7 @@ use trueray::settings::Settings;
 use trueray::tuning::Tuning;
 
 use crate::golden::all_subjects;
-use crate::support::{cpu_picture, gpu, gpu_picture, is_set, say};
+use crate::support::{KEPT, cpu_picture, gpu, gpu_picture, is_set, say};
 
 /// Those that between them need every table.
 const SOME: [&str; 7] = [
@@ -56,7 +56,7 @@ fn masks() -> Vec<(&'static str, Mask, Tables)> {
 
 fn masked(mask: &Mask) -> Gpu {
     let gpu = Gpu::with(Device::masked(&Choice::Gpu, mask).unwrap()).unwrap();
-    let mut gpu = gpu.keeping_kernels();
+    let mut gpu = gpu.keeping_kernels(KEPT);
     // As hardware does.
     let tuning = Tuning { texture_tables: false, ..gpu.tuned().tuning };
     gpu.set_tuning(tuning).unwrap();

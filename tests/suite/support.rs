@@ -1,6 +1,7 @@
 //! What several test modules share.
 
 use std::io::Write as _;
+use std::num::NonZero;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
@@ -13,10 +14,15 @@ use trueray::precision::Tier;
 use trueray::scene::{Scene, Window, parse};
 use trueray::settings::Settings;
 
+/// Compiling is what tests with a device take most of their time for: they share as many kernels as there are.
+pub(crate) const KEPT: NonZero<usize> = NonZero::new(400).unwrap();
+
 /// The one device of all tests, or `None`, said aloud, where there is none and none is required.
 pub(crate) fn gpu(test: &str) -> Option<MutexGuard<'static, Gpu>> {
     static GPU: OnceLock<Result<Mutex<Gpu>, String>> = OnceLock::new();
-    match GPU.get_or_init(|| Gpu::open(&Choice::Gpu).map(Mutex::new).map_err(|error| error.to_string())) {
+    match GPU.get_or_init(|| {
+        Gpu::open(&Choice::Gpu).map(|gpu| Mutex::new(gpu.keeping_kernels(KEPT))).map_err(|error| error.to_string())
+    }) {
         Ok(gpu) => Some(gpu.lock().unwrap_or_else(PoisonError::into_inner)),
         Err(error) => {
             assert!(!is_set("TRUERAY_REQUIRE_GPU"), "TRUERAY_REQUIRE_GPU is set, but {error}");

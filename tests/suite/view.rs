@@ -14,7 +14,7 @@ use glam::DVec3;
 use serde_json::Value;
 use trueray::effects::{self, Effects};
 use trueray::engine::{Backend, Engine, render_picture};
-use trueray::gpu::{Choice, Gpu};
+use trueray::gpu::{Choice, Gpu, USUAL_KERNELS};
 use trueray::precision::{self, Selection};
 use trueray::scene::{Scene, parse};
 use trueray::settings::Settings;
@@ -66,7 +66,8 @@ impl Work {
         let gpu = Arc::new(Mutex::new(None));
         let (rendering, opened) = (Arc::clone(&render_loop), Arc::clone(&gpu));
         let open = move || {
-            let gpu = if on_device { Some(Arc::new(Gpu::open(&Choice::Auto)?.keeping_kernels())) } else { None };
+            let gpu =
+                if on_device { Some(Arc::new(Gpu::open(&Choice::Auto)?.keeping_kernels(USUAL_KERNELS))) } else { None };
             opened.lock().unwrap().clone_from(&gpu);
             Ok(gpu)
         };

@@ -13,9 +13,6 @@ use crate::gpu::device::open::Device;
 /// Compiled kernels, those used last at the end.
 type Kept = Vec<(Specialisation, Arc<Stages>)>;
 
-/// For so many specialisations compiled kernels are kept; one more drops the one that was not used for the longest time.
-const MAX_KEPT: usize = 16;
-
 /// Kernels of one device.
 #[derive(Debug)]
 pub(crate) struct KernelStore {
@@ -25,12 +22,14 @@ pub(crate) struct KernelStore {
     ahead: Option<Ahead>,
     /// Compiled kernels that are used again; `None` where every renderer compiles its own.
     kept: Option<Mutex<Kept>>,
+    /// For so many specialisations they are kept; one more drops the one that was not used for the longest time.
+    most: usize,
 }
 
 impl KernelStore {
     /// For a device that has compiled nothing yet.
     pub(crate) fn open(device: &Device) -> Self {
-        Self { cache: KernelCache::open(device), ahead: None, kept: None }
+        Self { cache: KernelCache::open(device), ahead: None, kept: None, most: 0 }
     }
 
     /// Uses what was done before the device was open.
@@ -39,8 +38,8 @@ impl KernelStore {
     }
 
     /// From now on kernels are kept for other pictures.
-    pub(crate) fn keeping(self) -> Self {
-        Self { kept: Some(Mutex::default()), ..self }
+    pub(crate) fn keeping(self, most: usize) -> Self {
+        Self { kept: Some(Mutex::default()), most, ..self }
     }
 
     /// Why compiled kernels of earlier runs are not used, where they could be.
@@ -72,7 +71,7 @@ impl KernelStore {
             cache.save();
         }
         if let Some(mut kept) = kept() {
-            if kept.len() == MAX_KEPT {
+            if kept.len() == self.most {
                 kept.remove(0);
             }
             kept.push((*specialisation, Arc::clone(&stages)));
