@@ -11,6 +11,7 @@ use super::shade::max;
 use crate::camera::Camera;
 use crate::exact::TangentMargin;
 use crate::geometry::Ellipsoid;
+use crate::viewed::ViewedScene;
 
 /// How far rounding can move discriminants of primary rays.
 #[derive(Debug, Clone, Copy, Default)]
@@ -21,14 +22,14 @@ pub(crate) struct Tangents {
 }
 
 impl Tangents {
-    /// Of the `ellipsoids` around an eye that was at `eye`, seen through `camera` with a scalar of this unit roundoff.
+    /// Of the `ellipsoids` of `viewed`, seen through `camera` with a scalar of this unit roundoff.
     pub(crate) fn of(
         ellipsoids: impl ParallelIterator<Item = Ellipsoid>,
-        eye: f64,
+        viewed: &ViewedScene,
         camera: &Camera,
         unit: f64,
     ) -> Self {
-        let margin = TangentMargin::new(eye, camera, unit);
+        let margin = TangentMargin::new(viewed, camera, unit);
         Self { margin, widest: margin.widest(ellipsoids) }
     }
 

@@ -57,7 +57,7 @@ fn turned(scene: &Scene) -> Scene {
 }
 
 fn reference(scene: &Scene, settings: &Settings) -> Picture {
-    cpu_picture::<f64>(scene, settings, &Effects::of(scene, settings)).0
+    cpu_picture::<f64>(scene, settings, &Effects::of(&scene.viewed(settings))).0
 }
 
 fn differing(a: &Picture, b: &Picture) -> u64 {
@@ -71,7 +71,7 @@ fn the_default_is_the_camera_of_the_file() {
     assert_eq!(View::new(DVec3::ZERO, None, DVec3::Y), Ok(View::FILE));
     // Its rays are exactly (x, y, −near).
     let scene = world();
-    let camera = Camera::new(&scene, &Settings::exact());
+    let camera = Camera::new(&scene.viewed(&Settings::exact()));
     for (i, j) in [(0, 0), (17, 35), (95, 71)] {
         assert_eq!(camera.column(i) + camera.row(j), DVec3::new(camera.x(i), camera.y(j), -1.0));
     }
@@ -138,9 +138,9 @@ fn every_tier_shows_what_the_reference_does_from_anywhere() {
         for view in views(offset) {
             let scene = moved(&world(), offset);
             let settings = with(view);
-            let auto = Effects::of(&scene, &settings);
-            let all = Effects::requested(&scene, &settings, &Request::Exactly(EffectSet::ALL));
-            let exact = Reference::<f64>::new(&scene, &settings, &auto);
+            let auto = Effects::of(&scene.viewed(&settings));
+            let all = Effects::requested(&scene.viewed(&settings), &Request::Exactly(EffectSet::ALL));
+            let exact = Reference::<f64>::new(&scene.viewed(&settings), &auto);
             let expected = reference(&scene, &settings);
             assert!(differing(&expected, &reference(&world(), &Settings::exact())) > 100, "another picture");
             for tier in Tier::ALL {
@@ -161,7 +161,7 @@ fn every_tier_shows_what_the_reference_does_from_anywhere() {
 fn a_slightly_other_view_is_not_explained() {
     let (settings, other) = (with(views(DVec3::ZERO)[1]), with(views(DVec3::new(0.02, 0.0, 0.0))[1]));
     let scene = world();
-    let exact = Reference::<f64>::new(&scene, &settings, &Effects::of(&scene, &settings));
+    let exact = Reference::<f64>::new(&scene.viewed(&settings), &Effects::of(&scene.viewed(&settings)));
     let (expected, shown) = (reference(&scene, &settings), reference(&scene, &other));
     assert!(Explanation::of(&shown, &expected, &exact, &Judge::of(Tier::Fast)).unexplained > 0);
 }
@@ -221,7 +221,7 @@ proptest! {
         (scene.window.bottom, scene.window.top) = side(window[1], size[1], flip[1]);
         let settings = Settings { sampling, samples_per_side: samples, view, ..Settings::classic() };
         let density = Density { longest_tile, ..Density::DEFAULT };
-        let camera = Camera::new(&scene, &settings);
+        let camera = Camera::new(&scene.viewed(&settings));
 
         for rounding in [Rounding::SINGLE, Rounding::COMPENSATED, Rounding::DOUBLE] {
             let lists = Acceleration::with_density(&scene, &camera, EffectSet::ALL, rounding, &density).screen;
@@ -263,7 +263,7 @@ fn tiles_follow_the_outline() {
     (scene.width, scene.height) = (800, 800);
     let count = |scene: &Scene, view| {
         let settings = Settings { view, ..Settings::classic() };
-        let camera = Camera::new(scene, &settings);
+        let camera = Camera::new(&scene.viewed(&settings));
         Acceleration::new(scene, &camera, EffectSet::ALL, Rounding::SINGLE).screen.cover().covered(0, 800).len() as f64
     };
     let outlined = count(&scene, View::FILE);
