@@ -135,8 +135,7 @@ impl Camera {
 
     /// The greatest coordinate of a point on the window.
     pub fn greatest(&self) -> f64 {
-        let Window { near, left, right, bottom, top } = self.window;
-        [left, right, bottom, top].iter().fold(near, |greatest, edge| greatest.max(edge.abs()))
+        self.window.greatest()
     }
 
     /// Distance of the image plane.

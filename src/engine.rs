@@ -141,9 +141,9 @@ struct Tangents {
 }
 
 impl Tangents {
-    fn new(viewed: &ViewedScene, effects: &Effects) -> Self {
-        let (scene, settings) = viewed.in_file();
-        Self { scene: scene.clone(), settings: *settings, effects: effects.clone(), reference: OnceCell::new() }
+    fn new(viewed: ViewedScene, effects: &Effects) -> Self {
+        let (scene, settings) = viewed.into_file();
+        Self { scene: scene.clone(), settings, effects: effects.clone(), reference: OnceCell::new() }
     }
 
     fn reference(&self) -> &Reference<f64> {
@@ -181,7 +181,7 @@ impl<O: Output> DeviceEngine<'_, O> {
 
 impl<'a> Engine<'a> {
     /// Prepares rows of `viewed` for `backend`.
-    pub fn new(backend: Backend<'a>, viewed: &ViewedScene, effects: &Effects) -> Result<Self, gpu::Error> {
+    pub fn new(backend: Backend<'a>, viewed: ViewedScene, effects: &Effects) -> Result<Self, gpu::Error> {
         Self::with(backend, viewed, effects, &Options::default())
     }
 
@@ -210,7 +210,7 @@ impl<'a, O: Output> Engine<'a, O> {
     /// Prepares `viewed` for `backend`, with more than the pixels where that is wanted.
     pub fn with(
         backend: Backend<'a>,
-        viewed: &ViewedScene,
+        viewed: ViewedScene,
         effects: &Effects,
         options: &Options,
     ) -> Result<Self, gpu::Error> {
@@ -221,7 +221,7 @@ impl<'a, O: Output> Engine<'a, O> {
     /// what it has, the picture is an error: [`gpu::Error::Wrong`].
     pub fn verified(
         backend: Backend<'a>,
-        viewed: &ViewedScene,
+        viewed: ViewedScene,
         effects: &Effects,
         options: &Options,
         verify: Verify,
@@ -229,8 +229,8 @@ impl<'a, O: Output> Engine<'a, O> {
         let start = Instant::now();
         Ok(match backend {
             Backend::Reference => {
-                check_picture(viewed)?;
-                let reference = Reference::new(viewed, effects);
+                check_picture(&viewed)?;
+                let reference = Reference::new(&viewed, effects);
                 Self::Cpu(Box::new(CpuEngine {
                     reference,
                     prepare: start.elapsed(),
@@ -240,10 +240,10 @@ impl<'a, O: Output> Engine<'a, O> {
             }
             Backend::Device(gpu, tier) => {
                 let (renderer, verifier) = if verify == Verify::Nothing {
-                    (GpuRenderer::with(gpu, viewed, effects, tier, options)?, None)
+                    (GpuRenderer::with(gpu, &viewed, effects, tier, options)?, None)
                 } else {
-                    let (renderer, accel) = GpuRenderer::with_lists(gpu, viewed, effects, tier, options)?;
-                    (renderer, Verifier::new(viewed, effects, accel, backend.judge(), verify))
+                    let (renderer, accel) = GpuRenderer::with_lists(gpu, &viewed, effects, tier, options)?;
+                    (renderer, Verifier::new(&viewed, effects, accel, backend.judge(), verify))
                 };
                 let decides = renderer.tells_tangents() && verifier.is_none();
                 let tangents = decides.then(|| Tangents::new(viewed, effects));

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::brightness::{Brightness, Scalar};
 use crate::effects::{Effect, Effects};
 use crate::geometry::extent;
-use crate::scene::{Scene, Window};
+use crate::scene::Scene;
 use crate::viewed::ViewedScene;
 
 /// How many times larger than any semi-axis the whole scene may be, so that squares of the way to a light in semi-axes stay within
@@ -65,14 +65,11 @@ fn sizes(viewed: &ViewedScene) -> Option<String> {
         return Some(format!("the scene is more than {MAX_WORLD:.0e} times larger than the least semi-axis of {name}"));
     }
 
-    let greatest_of = |Window { near, left, right, bottom, top }| {
-        [left, right, bottom, top].iter().fold(near, |greatest: f64, edge: &f64| greatest.max(edge.abs()))
-    };
-    let window = viewed.in_file().0.window;
-    if greatest_of(window) / window.near > MAX_WINDOW {
+    let in_file = viewed.in_file().0.window;
+    if in_file.greatest() / in_file.near > MAX_WINDOW {
         return Some(format!("the window is more than {MAX_WINDOW:.0e} times larger than NEAR"));
     }
     let fits = |x: f64| x <= greatest * MAX_PLANE && x * MAX_PLANE >= greatest;
-    (greatest > 0.0 && !(fits(greatest_of(scene.window)) && fits(scene.window.near)))
+    (greatest > 0.0 && !(fits(scene.window.greatest()) && fits(scene.window.near)))
         .then(|| format!("NEAR or the window is more than {MAX_PLANE:.0e} times larger or smaller than the scene"))
 }

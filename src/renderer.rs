@@ -107,9 +107,7 @@ impl Renderer {
         let (viewed, effects) = renderable(scene, settings)?;
         let backend = self.backend(&viewed, &effects);
         let verify = self.verify.unwrap_or_else(|| Verify::usual(scene));
-        let mut engine = Engine::verified(backend, &viewed, &effects, &Options::default(), verify)?;
-        // The engine has what it needs: a scene that was moved goes before pixels take memory.
-        drop(viewed);
+        let mut engine = Engine::verified(backend, viewed, &effects, &Options::default(), verify)?;
         let (rgb, _) = render_picture(&mut engine)?;
         Ok(Picture::new(scene.width, scene.height, rgb)?)
     }

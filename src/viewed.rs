@@ -13,7 +13,7 @@ use crate::settings::{Secondary, Settings};
 ///
 /// The scene is moved in `f64`, so that what is near the eye stays exact to single precision wherever the eye is; its axes stay
 /// those of the world. The units change neither a digit nor a root nor a pixel. Where neither moves anything, nothing is copied.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct ViewedScene<'a> {
     scene: Cow<'a, Scene>,
     settings: Settings,
@@ -53,6 +53,11 @@ impl<'a> ViewedScene<'a> {
     /// The scene in the coordinates of its file, with the settings that belong to it.
     pub fn in_file(&self) -> (&'a Scene, &Settings) {
         (self.file_scene, &self.file_settings)
+    }
+
+    /// Likewise, for whoever needs no more: where the other scene is a copy, it goes.
+    pub fn into_file(self) -> (&'a Scene, Settings) {
+        (self.file_scene, self.file_settings)
     }
 
     /// The power of two by which the file's coordinates are multiplied.

@@ -253,7 +253,7 @@ impl Contestant<'_> {
     fn run(&mut self, scene: &Scene, setup: &RenderSetup, effects: &Effects, count: bool) -> Result<f64, gpu::Error> {
         let start = Instant::now();
         let options = Options { count_rays: count, ..Options::default() };
-        let mut engine: Engine = Engine::with(self.backend, &scene.viewed(setup.settings), effects, &options)?;
+        let mut engine: Engine = Engine::with(self.backend, scene.viewed(setup.settings), effects, &options)?;
         engine.rows(0, &mut self.rgb)?;
         let wall_ms = start.elapsed().as_secs_f64() * 1e3;
         let times = engine.times();

@@ -177,7 +177,7 @@ fn fits(gpu: &Gpu, knob: &Knob, value: f64) -> bool {
 impl Workload {
     /// Renders once and returns the time, in ms. Another picture than before is an error: no tuning may change one.
     fn render(&mut self, gpu: &Gpu, settings: &Settings, tuning: &Tuning) -> Result<f64, Error> {
-        let mut engine = Engine::new(Backend::Device(gpu, self.tier), &self.scene.viewed(settings), &self.effects)?;
+        let mut engine = Engine::new(Backend::Device(gpu, self.tier), self.scene.viewed(settings), &self.effects)?;
         let (rgb, _) = render_picture(&mut engine)?;
         let times = engine.times();
         match &self.picture {

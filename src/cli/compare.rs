@@ -233,6 +233,7 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Pair,
     let (name, picture, not_finite, judge) = if let Some((name, encoded)) = encoded {
         let picture = decode(args, &name, encoded, "the picture", &mut remarks)?;
         let judge = judge_of_unknown(&args.device, &viewed, &effects)?;
+        drop(viewed);
         (name, picture, None, judge)
     } else {
         // Comparing the reference with itself would say nothing: auto means a device here.
@@ -243,14 +244,14 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Pair,
         let gpu = open_device(choice)?;
         let tier = args.device.selection(Some(&gpu), &viewed, &effects).tier;
         let backend = Backend::Device(&gpu, tier);
-        let mut engine = Engine::new(backend, &viewed, &effects)?;
+        let mut engine = Engine::new(backend, viewed, &effects)?;
         let (rgb, not_finite) = render_picture(&mut engine)?;
         let name = format!("{}, {tier}", device_name(Some(&gpu)));
         (name, self::picture(scene, rgb)?, Some(not_finite), backend.judge())
     };
-    let (rgb, _) = render_picture(&mut Engine::new(Backend::Reference, &viewed, &effects)?)?;
+    let (rgb, _) = render_picture(&mut Engine::new(Backend::Reference, scene.viewed(&settings), &effects)?)?;
     let expected = self::picture(scene, rgb)?;
-    let reference = Reference::new(&viewed, &effects);
+    let reference = Reference::new(&scene.viewed(&settings), &effects);
     let explanation = Explanation::of(&picture, &expected, &reference, &judge);
     let names = [name, format!("reference of {}", loaded.name)];
     Ok(Pair { names, pictures: [picture, expected], remarks, explanation: Some(explanation), not_finite })

@@ -204,13 +204,12 @@ fn render_one(
     let options = Options { count_rays: wants_stats && !args.no_ray_counts, ..Options::default() };
     let verify = args.verify.unwrap_or_else(|| Verify::usual(scene));
     let mut renderer = match choice {
-        None => Renderer::Whole(Engine::verified(backend, &viewed, &effects, &options, verify)?),
-        Some(choice) => Renderer::InPart(Engine::verified(backend, &viewed, &effects, &options, verify)?, choice),
+        None => Renderer::Whole(Engine::verified(backend, viewed, &effects, &options, verify)?),
+        Some(choice) => Renderer::InPart(Engine::verified(backend, viewed, &effects, &options, verify)?, choice),
     };
     // The renderer has what it needs: the spheres go before paths and pixels take memory.
     let (width, height) = (scene.width, scene.height);
     let (spheres, lights) = (scene.spheres.len(), scene.lights.len());
-    drop(viewed);
     drop(loaded.scene);
 
     let mut writer = PictureWriter::create(&target, format, width, height)?;

@@ -25,7 +25,8 @@ fn scene(statements: &str) -> Result<Scene, Error> {
 /// The device's picture and its number of pixels that are not finite.
 fn render(gpu: &Gpu, tier: Tier, scene: &Scene, settings: &Settings) -> Result<(Vec<u8>, u64), Error> {
     let viewed = scene.viewed(settings);
-    render_picture(&mut Engine::new(Backend::Device(gpu, tier), &viewed, &Effects::of(&viewed))?)
+    let effects = Effects::of(&viewed);
+    render_picture(&mut Engine::new(Backend::Device(gpu, tier), viewed, &effects)?)
 }
 
 /// Adds one scene to the metrics: pixels that are not finite, and differences that the reference does not explain.
@@ -33,7 +34,7 @@ fn add(metrics: &mut Metrics, gpu: &Gpu, tier: Tier, scene: &Scene, settings: &S
     let (rgb, not_finite) = render(gpu, tier, scene, settings)?;
     let viewed = scene.viewed(settings);
     let effects = Effects::of(&viewed);
-    let (expected, _) = render_picture(&mut Engine::new(Backend::Reference, &viewed, &effects)?)?;
+    let (expected, _) = render_picture(&mut Engine::new(Backend::Reference, scene.viewed(settings), &effects)?)?;
     metrics.count += u64::from(SIZE * SIZE);
     metrics.not_finite += not_finite;
     let picture = |rgb: &[u8]| Picture::new(SIZE, SIZE, rgb.to_vec());

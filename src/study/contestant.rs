@@ -96,11 +96,12 @@ impl<'a> Runner<'a> {
     pub(super) fn new(
         contestant: Contestant,
         gpu: Option<&'a Gpu>,
-        viewed: &ViewedScene,
+        viewed: ViewedScene,
         effects: &Effects,
     ) -> Result<Self, gpu::Error> {
+        let (width, height) = (viewed.scene().width, viewed.scene().height);
         let renderer = match (contestant, gpu) {
-            (Contestant::CpuSingle, _) => Renderer::Single(Box::new(Reference::new(viewed, effects))),
+            (Contestant::CpuSingle, _) => Renderer::Single(Box::new(Reference::new(&viewed, effects))),
             (Contestant::Device(tier), Some(gpu)) => {
                 let options = Options { device_clock: true, ..Options::default() };
                 let backend = Backend::Device(gpu, tier);
@@ -108,8 +109,7 @@ impl<'a> Runner<'a> {
             }
             _ => Renderer::Engine(Box::new(Engine::new(Backend::Reference, viewed, effects)?)),
         };
-        let scene = viewed.scene();
-        Ok(Self { renderer, rgb: vec![0; scene.width as usize * scene.height as usize * 3] })
+        Ok(Self { renderer, rgb: vec![0; width as usize * height as usize * 3] })
     }
 
     /// Renders the whole picture once.

@@ -7,7 +7,8 @@ use crate::engine::{Backend, Engine, render_bands};
 use crate::gpu;
 use crate::hash::{EMPTY, fnv1a};
 use crate::report::Timings;
-use crate::viewed::ViewedScene;
+use crate::scene::Scene;
+use crate::settings::Settings;
 
 /// One way to compile the picture.
 #[derive(Debug, Clone, Serialize)]
@@ -35,9 +36,14 @@ pub struct EffectCost {
     pub variants: Vec<Variant>,
 }
 
-/// Renders `viewed` `runs` times in each variant, the variants in turn, after one warm-up of each.
-pub fn effect_cost(backend: Backend, viewed: &ViewedScene, runs: usize) -> Result<EffectCost, gpu::Error> {
-    let auto = Effects::of(viewed);
+/// Renders `scene` `runs` times in each variant, the variants in turn, after one warm-up of each.
+pub fn effect_cost(
+    backend: Backend,
+    scene: &Scene,
+    settings: &Settings,
+    runs: usize,
+) -> Result<EffectCost, gpu::Error> {
+    let auto = Effects::of(&scene.viewed(settings));
     let mut requests = vec![("auto".to_owned(), Request::Auto), ("all".to_owned(), Request::Exactly(EffectSet::ALL))];
     requests.extend(Effect::ALL.map(|effect| {
         let on = auto.set.has(effect);
@@ -47,7 +53,8 @@ pub fn effect_cost(backend: Backend, viewed: &ViewedScene, runs: usize) -> Resul
     let mut engines = Vec::new();
     let mut pictures = Vec::new();
     for (name, request) in requests {
-        let effects = Effects::requested(viewed, &request);
+        let viewed = scene.viewed(settings);
+        let effects = Effects::requested(&viewed, &request);
         let mut engine = Engine::new(backend, viewed, &effects)?;
         pictures.push(picture_hash(&mut engine)?);
         let compile_ms = engine.times().compile_ms;

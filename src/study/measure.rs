@@ -241,7 +241,7 @@ pub fn watched(input: &StudyInput, plan: &StudyPlan, mut hear: impl FnMut(Event)
         study.precision.points.iter().find(|point| point.contestant == main).map_or(0.0, |point| point.wall.median());
     let variants_ms = one_ms * (Effect::ALL.len() + 2) as f64;
     let backend = Backend::of(gpu, selection.tier);
-    study.effect_cost = effect_cost(backend, &scene.viewed(settings), plan.affordable(variants_ms))?;
+    study.effect_cost = effect_cost(backend, scene, settings, plan.affordable(variants_ms))?;
     hear(Event::Measured(&study));
     Ok(study)
 }
@@ -307,12 +307,12 @@ fn warm_up<'a>(
     let StudyInput { scene, gpu, .. } = *input;
     let viewed = scene.viewed(settings);
     let effects = (input.effects)(&viewed);
-    let mut runner = Runner::new(contestant, gpu, &viewed, &effects)?;
+    let mut runner = Runner::new(contestant, gpu, viewed, &effects)?;
     let run = runner.run()?;
     let linear = match contestant {
         Contestant::Device(_) => None,
         Contestant::CpuSingle => {
-            let reference = Reference::<f32>::new(&viewed, &effects);
+            let reference = Reference::<f32>::new(&scene.viewed(settings), &effects);
             Some(linear_colors(&reference, (scene.width, scene.height)))
         }
         Contestant::CpuDouble => Some(exact.linear.clone()),

@@ -17,7 +17,7 @@ use trueray::scene::Scene;
 use trueray::settings::{SampleOffset, Settings};
 use trueray::view::{View, ViewError};
 
-use crate::support::{cpu_picture, gpu, gpu_picture, scene_of};
+use crate::support::{cpu_picture, gpu, gpu_picture, scaled, scene_of};
 
 /// Ellipsoids before each other, mirrors, shadows.
 const WORLD: &str = "SPHERE floor 0 -12 -9 10 10 10 0.4 0.6 0.5 0.3 0.6 0.2 0.2 20\n\
@@ -95,6 +95,25 @@ fn axes_are_orthonormal() {
         assert!((a.dot(b) - product).abs() < 1e-15);
     }
     assert!(x.cross(y).dot(z) > 0.0);
+}
+
+/// Renderers have the eye at the origin and usual units, and a copy of the scene only where one of them takes it.
+#[test]
+fn a_scene_is_moved_to_its_eye() {
+    let (scene, at_origin) = (world(), Settings::classic());
+    assert!(std::ptr::eq(scene.viewed(&at_origin).scene(), &raw const scene));
+    let eye = DVec3::new(3.0, -2.0, 8.0);
+    let settings = Settings { view: View::new(eye, None, DVec3::Y).unwrap(), ..at_origin };
+    let viewed = scene.viewed(&settings);
+    assert_eq!((viewed.scene(), viewed.settings()), (&moved(&scene, -eye), &at_origin));
+    assert_eq!(viewed.in_file(), (&scene, &settings));
+    assert_eq!((viewed.factor(), viewed.eye_distance()), (1.0, eye.length()));
+    // The greatest coordinate is 12: in the units of kernels 1.5.
+    let tiny = scaled(&scene, 2_f64.powi(-60));
+    let viewed = tiny.viewed(&at_origin);
+    assert_eq!((viewed.scene(), viewed.factor()), (&scaled(&scene, 0.125), 2_f64.powi(57)));
+    assert_eq!(viewed.settings().secondary.reflection, at_origin.secondary.reflection * 2_f64.powi(57));
+    assert_eq!(viewed.settings().secondary.shadow, at_origin.secondary.shadow);
 }
 
 #[test]

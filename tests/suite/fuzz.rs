@@ -191,7 +191,7 @@ fn hostile_scenes() {
             return Ok(());
         }
         let _ = Selection::of(&scene.viewed(&settings), &effects, Request::default(), &Tier::ALL);
-        if let Ok(mut engine) = Engine::new(Backend::Reference, &scene.viewed(&settings), &effects) {
+        if let Ok(mut engine) = Engine::new(Backend::Reference, scene.viewed(&settings), &effects) {
             let (rgb, _) = render_picture(&mut engine).map_err(|error| TestCaseError::fail(error.to_string()))?;
             prop_assert_eq!(rgb.len(), 60);
             rendered.set(rendered.get() + 1);

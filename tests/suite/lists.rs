@@ -211,7 +211,7 @@ fn assert_whole_or_refused(gpu: &Gpu, scene: &Scene) {
     let engine = |verify| {
         let (backend, effects) = (Backend::Device(gpu, Tier::Fast), Effects::of(&scene.viewed(&settings)));
         let mut engine =
-            Engine::verified(backend, &scene.viewed(&settings), &effects, &Options::default(), verify).unwrap();
+            Engine::verified(backend, scene.viewed(&settings), &effects, &Options::default(), verify).unwrap();
         render_picture(&mut engine).map(|picture| (picture.0, engine.cut()))
     };
     let (whole, cut) = engine("1".parse().unwrap()).unwrap();

@@ -31,7 +31,7 @@ fn only_rows_and_pixels_of_the_picture_are_rendered() {
     let effects = Effects::of(&scene.viewed(&settings));
     let backends = std::iter::once(Backend::Reference).chain(gpu.iter().map(|gpu| Backend::Device(gpu, Tier::Fast)));
     for backend in backends {
-        let mut rows = Engine::new(backend, &scene.viewed(&settings), &effects).unwrap();
+        let mut rows = Engine::new(backend, scene.viewed(&settings), &effects).unwrap();
         let (whole, _) = render_picture(&mut rows).unwrap();
         for (first, bytes) in [(0, 1), (0, 119), (0, 4801), (0, 4920), (39, 240), (40, 120), (u32::MAX, 120)] {
             let error = rows.rows(first, &mut vec![0; bytes]).unwrap_err();
@@ -44,7 +44,7 @@ fn only_rows_and_pixels_of_the_picture_are_rendered() {
         assert!(some == whole[13 * 120..36 * 120], "{backend:?}");
 
         let mut list: Engine<Pixels> =
-            Engine::with(backend, &scene.viewed(&settings), &effects, &Options::default()).unwrap();
+            Engine::with(backend, scene.viewed(&settings), &effects, &Options::default()).unwrap();
         let mut color = [[7; 3]];
         for pixel in [[40, 0], [0, 40], [100, 100], [u32::MAX, u32::MAX]] {
             let error = list.pixels(&[pixel], &mut color).unwrap_err();
@@ -85,7 +85,7 @@ fn pictures_out_of_range_are_refused() {
             (sized(40, 40), Settings { samples_per_side: 70_000, ..settings }, "samples"),
             (sized(40, 40), Settings { max_depth: 1001, ..settings }, "max_depth"),
         ] {
-            let error = Engine::new(backend, &scene.viewed(&settings), &effects).unwrap_err();
+            let error = Engine::new(backend, scene.viewed(&settings), &effects).unwrap_err();
             assert!(matches!(&error, Error::Misuse(Misuse::Picture(why)) if why.contains(name)), "{error}");
         }
     }

@@ -138,7 +138,7 @@ fn a_large_picture_is_rendered_in_short_dispatches() {
     (scene.width, scene.height) = (4001, 3003);
     let settings = Settings::classic();
     let effects = Effects::of(&scene.viewed(&settings));
-    let mut engine = Engine::new(Backend::Device(&gpu, Tier::Fast), &scene.viewed(&settings), &effects).unwrap();
+    let mut engine = Engine::new(Backend::Device(&gpu, Tier::Fast), scene.viewed(&settings), &effects).unwrap();
     let mut white = 0_u64;
     let mut bands = 0;
     render_bands(&mut engine, |band| {

@@ -14,7 +14,7 @@ const COUNTED: Options = Options { count_rays: true, device_clock: false, pixel_
 
 /// The rays of the whole picture, and the picture.
 fn counted(backend: Backend, scene: &Scene, settings: &Settings, effects: &Effects) -> (Rays, Vec<u8>) {
-    let mut engine = Engine::with(backend, &scene.viewed(settings), effects, &COUNTED).unwrap();
+    let mut engine = Engine::with(backend, scene.viewed(settings), effects, &COUNTED).unwrap();
     let (rgb, _) = render_picture(&mut engine).unwrap();
     (engine.rays().unwrap(), rgb)
 }
@@ -84,7 +84,7 @@ fn rays_of_a_part_of_the_pixels_are_counted() {
     let effects = Effects::of(&scene.viewed(&settings));
     let samples = Samples::new((scene.width, scene.height), &Density::sparse(0.2)).unwrap();
     let count = |backend| {
-        let mut engine = Engine::with(backend, &scene.viewed(&settings), &effects, &COUNTED).unwrap();
+        let mut engine = Engine::with(backend, scene.viewed(&settings), &effects, &COUNTED).unwrap();
         render_partial(&mut engine, backend, &samples, Fill::Nearest, |_| ()).unwrap();
         engine.rays().unwrap()
     };
@@ -126,10 +126,9 @@ fn rays_that_are_not_asked_for_are_not_counted() {
     let scene = scene_of("SPHERE a 0 0 -5 1 1 1 1 1 1 0 1 0 0.5 1\nLIGHT l 3 4 1 1 1 1");
     let (settings, backend) = (Settings::classic(), Backend::Device(&gpu, Tier::Fast));
     let effects = Effects::of(&scene.viewed(&settings));
-    let mut engine = Engine::new(backend, &scene.viewed(&settings), &effects).unwrap();
+    let mut engine = Engine::new(backend, scene.viewed(&settings), &effects).unwrap();
     render_picture(&mut engine).unwrap();
     assert_eq!(engine.rays(), None);
-    let engine: Engine<Pixels> =
-        Engine::with(backend, &scene.viewed(&settings), &effects, &Options::default()).unwrap();
+    let engine: Engine<Pixels> = Engine::with(backend, scene.viewed(&settings), &effects, &Options::default()).unwrap();
     assert_eq!(engine.rays(), None);
 }

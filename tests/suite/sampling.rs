@@ -197,8 +197,8 @@ fn sampled_pixels_are_those_of_the_full_picture() {
         let effects = Effects::of(&scene.viewed(&settings));
         for &backend in &backends {
             let (full, _) =
-                render_picture(&mut Engine::new(backend, &scene.viewed(&settings), &effects).unwrap()).unwrap();
-            let mut in_part = Engine::with(backend, &scene.viewed(&settings), &effects, &Options::default()).unwrap();
+                render_picture(&mut Engine::new(backend, scene.viewed(&settings), &effects).unwrap()).unwrap();
+            let mut in_part = Engine::with(backend, scene.viewed(&settings), &effects, &Options::default()).unwrap();
             for density in [Density::FULL, Density::sparse(0.13), foveated([40.0, 30.0], 10.0, 12.0, 0.03)] {
                 let samples = Samples::new(size, &density).unwrap();
                 let rgb = render_partial(&mut in_part, backend, &samples, Fill::Smooth, |_| ()).unwrap().rgb;

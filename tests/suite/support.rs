@@ -95,7 +95,7 @@ pub(crate) fn gpu_picture(
     settings: &Settings,
     effects: &Effects,
 ) -> (Picture, u64) {
-    let mut engine = Engine::new(Backend::Device(gpu, tier), &scene.viewed(settings), effects).unwrap();
+    let mut engine = Engine::new(Backend::Device(gpu, tier), scene.viewed(settings), effects).unwrap();
     let (rgb, not_finite) = render_picture(&mut engine).unwrap();
     (picture(scene, rgb), not_finite)
 }

@@ -203,7 +203,7 @@ fn what_follows_a_tangent_is_decided_too() {
         let touched: Vec<_> = [[45, 60], [75, 24], [105, 60], [60, 105], [60, 60]].to_vec();
         let backend = Backend::Device(&gpu, Tier::Double);
         let mut engine =
-            Engine::<Pixels>::with(backend, &scene.viewed(&settings), &effects, &Options::default()).unwrap();
+            Engine::<Pixels>::with(backend, scene.viewed(&settings), &effects, &Options::default()).unwrap();
         let mut colors = vec![[0; 3]; touched.len()];
         engine.pixels(&touched, &mut colors).unwrap();
         for (&[x, y], color) in touched.iter().zip(colors) {

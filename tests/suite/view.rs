@@ -227,7 +227,7 @@ pub(crate) fn rendered(gpu: Option<&Gpu>, scene: &Scene, view: &ViewState) -> Ve
     let effects = Effects::requested(&scene.viewed(&settings), &view.effects);
     let select = |gpu: &Gpu| Selection::of(&scene.viewed(&settings), &effects, view.precision, gpu.ladder()).tier;
     let backend = gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, select(gpu)));
-    render_picture(&mut Engine::new(backend, &scene.viewed(&settings), &effects).unwrap()).unwrap().0
+    render_picture(&mut Engine::new(backend, scene.viewed(&settings), &effects).unwrap()).unwrap().0
 }
 
 #[test]

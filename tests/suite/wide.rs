@@ -70,7 +70,7 @@ fn the_last_places_of_the_greatest_pictures_are_rendered() {
                 [at(width, x), at(height, y)]
             };
             let pixels: Vec<_> = (0..100).map(pixel).collect();
-            let mut list = Engine::with(backend, &scene.viewed(&settings), &effects, &Options::default()).unwrap();
+            let mut list = Engine::with(backend, scene.viewed(&settings), &effects, &Options::default()).unwrap();
             let [mut colors, mut expected] = [0, 0].map(|_| vec![[0; 3]; pixels.len()]);
             list.pixels(&pixels, &mut colors).unwrap();
             reference.pixels(&pixels, &mut expected).unwrap();
@@ -80,7 +80,7 @@ fn the_last_places_of_the_greatest_pictures_are_rendered() {
             let count = 13;
             if width < height {
                 let [mut rgb, mut expected] = [0, 0].map(|_| vec![0; 3 * width as usize * count as usize]);
-                let mut rows = Engine::new(backend, &scene.viewed(&settings), &effects).unwrap();
+                let mut rows = Engine::new(backend, scene.viewed(&settings), &effects).unwrap();
                 rows.rows(height - count, &mut rgb).unwrap();
                 reference.rows(height - count, &mut expected).unwrap();
                 assert!(is_near(&rgb, &expected), "{case}");

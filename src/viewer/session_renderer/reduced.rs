@@ -91,7 +91,7 @@ impl<'g> SessionRenderer<'g> {
         let start = Instant::now();
         let options = self.maps.options();
         let mut engine: Engine<Pixels> =
-            with_size(part, size, |part| Engine::with(backend, &part.viewed(settings), effects, &options))?;
+            with_size(part, size, |part| Engine::with(backend, part.viewed(settings), effects, &options))?;
         let samples = map.samples.pixels();
         let mut colors = vec![[0; 3]; samples.len()];
         engine.pixels(samples, &mut colors)?;
