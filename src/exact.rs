@@ -28,9 +28,9 @@ pub struct TangentMargin {
 }
 
 impl TangentMargin {
-    /// For rays of `camera`, which is that of `viewed`, in arithmetic with this unit roundoff.
-    pub fn new(viewed: &ViewedScene, camera: &Camera, unit: f64) -> Self {
-        let eye = viewed.eye_distance();
+    /// For rays from the eye of `viewed` in arithmetic with this unit roundoff.
+    pub fn new(viewed: &ViewedScene, unit: f64) -> Self {
+        let (eye, camera) = (viewed.eye_distance(), Camera::new(viewed));
         Self { unit, eye, window: camera.greatest() * camera.stretch(), shortest: camera.near() * camera.stretch() }
     }
 

@@ -44,6 +44,7 @@ fn run_export(args: &Args) -> Result<(), Failure> {
     if effects != Effects::of(&viewed) {
         return Err(Failure::new(USAGE, "a scene is exported with what it calls for: leave --effects out"));
     }
+    drop(viewed);
     let export =
         export(scene, &settings, &effects, args.to).map_err(|obstacles| refusal(args.to, &loaded, &obstacles))?;
     for warning in &export.warnings {

@@ -42,7 +42,7 @@ pub fn picked(viewed: &ViewedScene, x: u32, y: u32) -> Option<PrimaryHit> {
     let mut nearest = None;
     for (sphere, (ellipsoid, in_file)) in scene.spheres.iter().zip(&file_scene.spheres).enumerate() {
         let ellipsoid = Ellipsoid::new(ellipsoid);
-        let tangents = Tangents::of(rayon::iter::once(ellipsoid), viewed, &camera, f64::ROUNDING.tests);
+        let tangents = Tangents::of(rayon::iter::once(ellipsoid), viewed, f64::ROUNDING.tests);
         let touches = || exact.discriminant(sample, in_file.center, in_file.scale);
         let Ellipsoid { center, inv_scale, radius, .. } = ellipsoid;
         let (center, inv_scale) = (Vec3::from_f64(center), Vec3::from_f64(inv_scale));

@@ -32,14 +32,14 @@ impl<T: Real> Reference<T> {
 
     /// Likewise, with lists of spheres for a renderer that rounds like this, at least like `T`.
     pub fn with_rounding(viewed: &ViewedScene, effects: &Effects, rounding: Rounding) -> Self {
-        let accel = Acceleration::new(viewed.scene(), &Camera::new(viewed), effects.set, rounding);
+        let accel = Acceleration::new(viewed, effects.set, rounding);
         Self::with_lists(viewed, effects, accel)
     }
 
     /// Likewise, with lists of spheres that were made for another renderer of this scene, which rounds at least like `T`.
     pub fn with_lists(viewed: &ViewedScene, effects: &Effects, accel: Acceleration) -> Self {
-        let camera = Camera::new(viewed);
-        Self { world: World::new(viewed, effects, &camera, accel), camera, quantize: viewed.settings().quantize }
+        let (world, camera) = (World::new(viewed, effects, accel), Camera::new(viewed));
+        Self { world, camera, quantize: viewed.settings().quantize }
     }
 
     /// The ray of the sample in sample column `i` and sample row `j`.

@@ -97,7 +97,7 @@ pub(crate) struct World<T> {
 }
 
 impl<T: Real> World<T> {
-    pub(crate) fn new(viewed: &ViewedScene, effects: &Effects, camera: &Camera, accel: Acceleration) -> Self {
+    pub(crate) fn new(viewed: &ViewedScene, effects: &Effects, accel: Acceleration) -> Self {
         let (scene, settings) = (viewed.scene(), viewed.settings());
         let on = |effect| effects.set.has(effect);
         let lit = on(Effect::Diffuse) || on(Effect::Specular);
@@ -122,7 +122,7 @@ impl<T: Real> World<T> {
             lights: scene.lights.iter().filter(|_| lit).map(PointLight::new).collect(),
             ambient: Vec3::from_f64(scene.ambient),
             background: Vec3::from_f64(scene.background),
-            primary: if on(Effect::Shells) { range(camera.t_min(), true) } else { range(0.0, false) },
+            primary: if on(Effect::Shells) { range(Camera::new(viewed).t_min(), true) } else { range(0.0, false) },
             shadow_t_min: T::from_f64(settings.secondary.shadow),
             reflection: range(settings.secondary.reflection, true),
             refraction: range(0.0, true),
@@ -131,7 +131,7 @@ impl<T: Real> World<T> {
             specular: settings.specular,
             max_depth: effects.depth,
             accel,
-            tangents: Tangents::of(ellipsoids.par_iter().copied(), viewed, camera, T::ROUNDING.tests),
+            tangents: Tangents::of(ellipsoids.par_iter().copied(), viewed, T::ROUNDING.tests),
             exact: ExactScene::new(viewed, on(Effect::Ellipsoids)),
         }
     }

@@ -8,7 +8,6 @@ use super::intersect::Approach;
 use super::real::Real;
 use super::scene::Shape;
 use super::shade::max;
-use crate::camera::Camera;
 use crate::exact::TangentMargin;
 use crate::geometry::Ellipsoid;
 use crate::viewed::ViewedScene;
@@ -22,14 +21,9 @@ pub(crate) struct Tangents {
 }
 
 impl Tangents {
-    /// Of the `ellipsoids` of `viewed`, seen through `camera` with a scalar of this unit roundoff.
-    pub(crate) fn of(
-        ellipsoids: impl ParallelIterator<Item = Ellipsoid>,
-        viewed: &ViewedScene,
-        camera: &Camera,
-        unit: f64,
-    ) -> Self {
-        let margin = TangentMargin::new(viewed, camera, unit);
+    /// Of the `ellipsoids` of `viewed`, with a scalar of this unit roundoff.
+    pub(crate) fn of(ellipsoids: impl ParallelIterator<Item = Ellipsoid>, viewed: &ViewedScene, unit: f64) -> Self {
+        let margin = TangentMargin::new(viewed, unit);
         Self { margin, widest: margin.widest(ellipsoids) }
     }
 

@@ -17,7 +17,6 @@ use rayon::prelude::*;
 
 use crate::accel::{Acceleration, Cover, Density, Rounding};
 use crate::brightness::Scalar;
-use crate::camera::Camera;
 use crate::effects::{Effect, Effects};
 use crate::exact::TangentMargin;
 use crate::geometry::{ellipsoid, shape_indices};
@@ -204,8 +203,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
             dispatch_tiles: dispatch_tiles(gpu.device.info.max_uniform),
             ..Specialisation::new(viewed, effects, kernel, tuning, tables)
         };
-        let camera = Camera::new(viewed);
-        let lists = |density| Acceleration::with_density(scene, &camera, specialisation.effects, rounding, density);
+        let lists = |density| Acceleration::with_density(viewed, specialisation.effects, rounding, density);
         let mut accel = lists(&tuning.density);
         // Finer lists than are needed must not keep a scene from fitting.
         if tuning.density != Density::LEAST && are_too_large(&gpu.device, tables, &list_contents(&accel)) {
@@ -217,7 +215,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         let indices = leaves_surfaces.then(|| shape_indices(&scene.spheres, true_axes)).flatten();
         let tangent_margin = if kernel.tells_tangents() {
             let ellipsoids = scene.spheres.par_iter().map(|sphere| ellipsoid(sphere, true_axes));
-            TangentMargin::new(viewed, &camera, kernel.rounding().tests).widest(ellipsoids)
+            TangentMargin::new(viewed, kernel.rounding().tests).widest(ellipsoids)
         } else {
             0.0
         };

@@ -240,10 +240,11 @@ proptest! {
         (scene.window.bottom, scene.window.top) = side(window[1], size[1], flip[1]);
         let settings = Settings { sampling, samples_per_side: samples, view, ..Settings::classic() };
         let density = Density { longest_tile, ..Density::DEFAULT };
-        let camera = Camera::new(&scene.viewed(&settings));
+        let viewed = scene.viewed(&settings);
+        let camera = Camera::new(&viewed);
 
         for rounding in [Rounding::SINGLE, Rounding::COMPENSATED, Rounding::DOUBLE] {
-            let lists = Acceleration::with_density(&scene, &camera, EffectSet::ALL, rounding, &density).screen;
+            let lists = Acceleration::with_density(&viewed, EffectSet::ALL, rounding, &density).screen;
             for j in 0..height * samples {
                 for i in 0..width * samples {
                     let ray = camera.column(i) + camera.row(j);
@@ -282,8 +283,11 @@ fn tiles_follow_the_outline() {
     (scene.width, scene.height) = (800, 800);
     let count = |scene: &Scene, view| {
         let settings = Settings { view, ..Settings::classic() };
-        let camera = Camera::new(&scene.viewed(&settings));
-        Acceleration::new(scene, &camera, EffectSet::ALL, Rounding::SINGLE).screen.cover().covered(0, 800).len() as f64
+        Acceleration::new(&scene.viewed(&settings), EffectSet::ALL, Rounding::SINGLE)
+            .screen
+            .cover()
+            .covered(0, 800)
+            .len() as f64
     };
     let outlined = count(&scene, View::FILE);
     // The ellipse covers π/4 of its rectangle, of about 267 × 444 pixels.

@@ -321,9 +321,8 @@ mod basic {
         assert_eq!(view.scene.spheres.len(), 17);
         let in_no_cell = |scene: &Scene| {
             let settings = Settings::classic();
-            let camera = trueray::camera::Camera::new(&scene.viewed(&settings));
             let rounding = trueray::accel::Rounding::DOUBLE;
-            let lists = trueray::accel::Acceleration::new(scene, &camera, EffectSet::ALL, rounding);
+            let lists = trueray::accel::Acceleration::new(&scene.viewed(&settings), EffectSet::ALL, rounding);
             lists.grid.unwrap().large().len()
         };
         assert_eq!(in_no_cell(&view.scene), 0);

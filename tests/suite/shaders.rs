@@ -4,7 +4,6 @@ use std::collections::HashSet;
 use std::num::NonZeroU32;
 
 use trueray::accel::{Acceleration, Lists};
-use trueray::camera::Camera;
 use trueray::effects::{Effect, EffectSet, Effects, Request};
 use trueray::gpu::layout::{double, single};
 use trueray::gpu::{
@@ -552,7 +551,7 @@ fn the_device_reads_every_field_where_the_host_wrote_it() {
         expected[sphere].insert(7, index);
     }
     for kernel in Tier::ALL.into_iter().filter_map(|tier| gpu.kernel(tier).ok()) {
-        let accel = Acceleration::new(&scene, &Camera::new(&scene.viewed(&settings)), effects.set, kernel.rounding());
+        let accel = Acceleration::new(&scene.viewed(&settings), effects.set, kernel.rounding());
         let grid = accel.grid.unwrap();
         let single = |x: f64| (x as f32).to_bits();
         let mut expected = expected.clone();

@@ -33,7 +33,7 @@ impl Ahead {
         let tuning = Tuning::of(Class::Software);
         let selection = Selection::of(viewed, effects, request, &SOFTWARE_LADDER);
         let kernel = Kernel::Tier(selection.tier);
-        let grid = Acceleration::grid_of(viewed.scene(), effects.set, kernel.rounding(), &tuning.density);
+        let grid = Acceleration::grid_of(viewed, effects.set, kernel.rounding(), &tuning.density);
         let specialisation =
             Specialisation::new(viewed, effects, kernel, &tuning, Tables::Stored).with_grid(grid.as_ref(), &tuning);
         let module = Parsed::new(&specialisation.module()).ok()?;

@@ -2,7 +2,6 @@
 
 use super::compute::Job;
 use crate::accel::Acceleration;
-use crate::camera::Camera;
 use crate::effects::{EffectSet, Effects};
 use crate::gpu::device::error::Error;
 use crate::gpu::facade::Gpu;
@@ -27,7 +26,7 @@ pub fn echo_layout(gpu: &Gpu, viewed: &ViewedScene, effects: &Effects, kernel: K
     if scene.spheres.len() != 2 || effects.set != EffectSet::ALL {
         return Err(Misuse::Picture("only two spheres with all effects are echoed".into()).into());
     }
-    let accel = Acceleration::new(scene, &Camera::new(viewed), effects.set, kernel.rounding());
+    let accel = Acceleration::new(viewed, effects.set, kernel.rounding());
     let packed = Packed::new(viewed, effects, kernel, &accel, None, 0.25);
     let [head, sphere, light, tail] = COUNTS;
     let job = Job {
