@@ -3,9 +3,9 @@
 use glam::DVec3;
 
 use crate::geometry::reciprocal_power_of_two;
-use crate::scene::{Scene, Window};
-use crate::settings::Settings;
+use crate::scene::Window;
 use crate::view::View;
+use crate::viewed::ViewedScene;
 
 /// A primary ray counts hits beyond this τ, where 1 is the image plane: what lies before it, or just touches it, is cut away.
 pub const NEAR_T_MIN: f64 = 1.0 + 1e-6;
@@ -18,7 +18,7 @@ const COMMON_WINDOW: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
 /// power of two, [`Camera::stretch`], which keeps squares of directions within the range of `f32` for windows of any size. So
 /// τ·`stretch` = 1 lies on the image plane; it is 1 for usual windows.
 ///
-/// Each pixel is cut into k × k equal cells, k being [`Settings::samples_per_side`], and each cell has one sample where the
+/// Each pixel is cut into k × k equal cells, k being [`crate::settings::Settings::samples_per_side`], and each cell has one sample where the
 /// convention places it: with centre sampling in the middle of the cell, at offsets (s + ½)/k from the pixel's left and
 /// top, with corner sampling at the cell's corner, at offsets s/k, for s in 0..k. Sample column i lies in pixel column
 /// ⌊i/k⌋, and k = 1 is one sample a pixel at the convention's own offset. The samples of corner conventions have their mean
@@ -36,8 +36,9 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// The camera of `scene`, whose eye is at the origin, with its axes and samples placed by `settings`.
-    pub fn new(scene: &Scene, settings: &Settings) -> Self {
+    /// The camera of `viewed`.
+    pub fn new(viewed: &ViewedScene) -> Self {
+        let (scene, settings) = (viewed.scene(), viewed.settings());
         let camera = Self {
             window: scene.window,
             view: settings.view,
@@ -134,8 +135,7 @@ impl Camera {
 
     /// The greatest coordinate of a point on the window.
     pub fn greatest(&self) -> f64 {
-        let Window { near, left, right, bottom, top } = self.window;
-        [left, right, bottom, top].iter().fold(near, |greatest, edge| greatest.max(edge.abs()))
+        self.window.greatest()
     }
 
     /// Distance of the image plane.

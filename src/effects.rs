@@ -9,9 +9,9 @@ use std::str::FromStr;
 use glam::DVec3;
 use serde::{Serialize, Serializer};
 
-use crate::geometry::in_range;
 use crate::scene::{Light, Scene, Sphere};
 use crate::settings::Settings;
+use crate::viewed::ViewedScene;
 use crate::words::count;
 
 /// Something a renderer can simulate or leave out.
@@ -218,11 +218,11 @@ pub struct Effects {
 }
 
 impl Effects {
-    /// What `scene` calls for under `settings`.
-    pub fn of(scene: &Scene, settings: &Settings) -> Self {
-        // In the units of kernels no square below overflows or underflows, and what is too small for them is seen.
-        let (scene, settings) = in_range(scene, settings);
-        let needs = Needs::new(&scene, &settings);
+    /// What `viewed` calls for.
+    pub fn of(viewed: &ViewedScene) -> Self {
+        // In its units no square below overflows or underflows, and what is too small for kernels is seen.
+        let settings = viewed.settings();
+        let needs = Needs::new(viewed.scene(), settings);
         let (depth, reflections) = needs.reflections();
         let refraction = needs.refraction();
         let depth = if refraction.is_ok() { settings.max_depth } else { depth };
@@ -266,9 +266,10 @@ impl Effects {
         })
     }
 
-    /// What `request` makes of what `scene` calls for.
-    pub fn requested(scene: &Scene, settings: &Settings, request: &Request) -> Self {
-        let mut effects = Self::of(scene, settings);
+    /// What `request` makes of what `viewed` calls for.
+    pub fn requested(viewed: &ViewedScene, request: &Request) -> Self {
+        let settings = viewed.settings();
+        let mut effects = Self::of(viewed);
         let set = match request {
             Request::Auto => return effects,
             Request::Exactly(set) => *set,

@@ -16,6 +16,7 @@ use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::tiles::TILE;
 use crate::verify::{Verifier, Verify};
+use crate::viewed::ViewedScene;
 
 pub use crate::gpu::{Options, Output, Pixels, Rows};
 #[cfg(feature = "view")]
@@ -140,12 +141,13 @@ struct Tangents {
 }
 
 impl Tangents {
-    fn new(scene: &Scene, settings: &Settings, effects: &Effects) -> Self {
-        Self { scene: scene.clone(), settings: *settings, effects: effects.clone(), reference: OnceCell::new() }
+    fn new(viewed: ViewedScene, effects: &Effects) -> Self {
+        let (scene, settings) = viewed.into_file();
+        Self { scene: scene.clone(), settings, effects: effects.clone(), reference: OnceCell::new() }
     }
 
     fn reference(&self) -> &Reference<f64> {
-        self.reference.get_or_init(|| Reference::new(&self.scene, &self.settings, &self.effects))
+        self.reference.get_or_init(|| Reference::new(&self.scene.viewed(&self.settings), &self.effects))
     }
 }
 
@@ -178,14 +180,9 @@ impl<O: Output> DeviceEngine<'_, O> {
 }
 
 impl<'a> Engine<'a> {
-    /// Prepares rows of `scene` for `backend`.
-    pub fn new(
-        backend: Backend<'a>,
-        scene: &Scene,
-        settings: &Settings,
-        effects: &Effects,
-    ) -> Result<Self, gpu::Error> {
-        Self::with(backend, scene, settings, effects, &Options::default())
+    /// Prepares rows of `viewed` for `backend`.
+    pub fn new(backend: Backend<'a>, viewed: ViewedScene, effects: &Effects) -> Result<Self, gpu::Error> {
+        Self::with(backend, viewed, effects, &Options::default())
     }
 
     /// Renders whole rows from row `first` on; returns how many pixels are not finite.
@@ -210,23 +207,21 @@ impl<'a> Engine<'a> {
 }
 
 impl<'a, O: Output> Engine<'a, O> {
-    /// Prepares `scene` for `backend`, with more than the pixels where that is wanted.
+    /// Prepares `viewed` for `backend`, with more than the pixels where that is wanted.
     pub fn with(
         backend: Backend<'a>,
-        scene: &Scene,
-        settings: &Settings,
+        viewed: ViewedScene,
         effects: &Effects,
         options: &Options,
     ) -> Result<Self, gpu::Error> {
-        Self::verified(backend, scene, settings, effects, options, Verify::Nothing)
+        Self::verified(backend, viewed, effects, options, Verify::Nothing)
     }
 
     /// Likewise; a device's pixels that `verify` chooses are calculated by the reference, too, and where rounding does not explain
     /// what it has, the picture is an error: [`gpu::Error::Wrong`].
     pub fn verified(
         backend: Backend<'a>,
-        scene: &Scene,
-        settings: &Settings,
+        viewed: ViewedScene,
         effects: &Effects,
         options: &Options,
         verify: Verify,
@@ -234,8 +229,8 @@ impl<'a, O: Output> Engine<'a, O> {
         let start = Instant::now();
         Ok(match backend {
             Backend::Reference => {
-                check_picture(scene, settings)?;
-                let reference = Reference::new(scene, settings, effects);
+                check_picture(&viewed)?;
+                let reference = Reference::new(&viewed, effects);
                 Self::Cpu(Box::new(CpuEngine {
                     reference,
                     prepare: start.elapsed(),
@@ -245,13 +240,13 @@ impl<'a, O: Output> Engine<'a, O> {
             }
             Backend::Device(gpu, tier) => {
                 let (renderer, verifier) = if verify == Verify::Nothing {
-                    (GpuRenderer::with(gpu, scene, settings, effects, tier, options)?, None)
+                    (GpuRenderer::with(gpu, &viewed, effects, tier, options)?, None)
                 } else {
-                    let (renderer, accel) = GpuRenderer::with_lists(gpu, scene, settings, effects, tier, options)?;
-                    (renderer, Verifier::new(scene, settings, effects, accel, backend.judge(), verify))
+                    let (renderer, accel) = GpuRenderer::with_lists(gpu, &viewed, effects, tier, options)?;
+                    (renderer, Verifier::new(&viewed, effects, accel, backend.judge(), verify))
                 };
                 let decides = renderer.tells_tangents() && verifier.is_none();
-                let tangents = decides.then(|| Tangents::new(scene, settings, effects));
+                let tangents = decides.then(|| Tangents::new(viewed, effects));
                 let (prepare, decided) = (start.elapsed(), Duration::ZERO);
                 Self::Gpu(Box::new(DeviceEngine { renderer, prepare, verifier, tangents, decided, cut: 0 }))
             }

@@ -11,15 +11,15 @@ use rayon::prelude::*;
 
 use crate::camera::Camera;
 use crate::geometry::Ellipsoid;
-use crate::scene::{Scene, Sphere};
-use crate::settings::Settings;
+use crate::scene::Sphere;
+use crate::viewed::ViewedScene;
 
 /// How far rounding can move the discriminant r² − |perpendicular|² of a ray from the eye, in object space.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct TangentMargin {
     /// Unit roundoff.
     unit: f64,
-    /// Distance of the eye from the origin of the scene file.
+    /// Distance of the eye from the origin of the scene file, in the units of kernels.
     eye: f64,
     /// The greatest coordinate on the window, as rays have it.
     window: f64,
@@ -28,8 +28,9 @@ pub struct TangentMargin {
 }
 
 impl TangentMargin {
-    /// For rays of `camera`, whose eye was moved to the origin from so far away, in arithmetic with this unit roundoff.
-    pub fn new(eye: f64, camera: &Camera, unit: f64) -> Self {
+    /// For rays from the eye of `viewed` in arithmetic with this unit roundoff.
+    pub fn new(viewed: &ViewedScene, unit: f64) -> Self {
+        let (eye, camera) = (viewed.eye_distance(), Camera::new(viewed));
         Self { unit, eye, window: camera.greatest() * camera.stretch(), shortest: camera.near() * camera.stretch() }
     }
 
@@ -52,14 +53,16 @@ impl TangentMargin {
 
     /// The greatest margin of a ray that may touch one of these, whose radii are in [1, 2).
     pub fn widest(&self, ellipsoids: impl ParallelIterator<Item = Ellipsoid>) -> f64 {
-        let of = |e: Ellipsoid| {
-            let distance = (e.center * e.inv_scale).length();
-            let [most, least] = [e.inv_scale.max_element(), e.inv_scale.min_element()];
-            // Where |perpendicular|² − r² is within the margin, |perpendicular| is below 2.1 and 2.5 times what it moves.
-            let moved = self.moved(distance, most, least * self.shortest);
-            16.0 * (moved + moved * moved) + 40.0 * self.unit
-        };
-        ellipsoids.map(of).reduce(|| 0.0, f64::max)
+        ellipsoids.map(|ellipsoid| self.greatest(ellipsoid)).reduce(|| 0.0, f64::max)
+    }
+
+    /// That of a ray that may touch this one.
+    pub(crate) fn greatest(&self, e: Ellipsoid) -> f64 {
+        let distance = (e.center * e.inv_scale).length();
+        let [most, least] = [e.inv_scale.max_element(), e.inv_scale.min_element()];
+        // Where |perpendicular|² − r² is within the margin, |perpendicular| is below 2.1 and 2.5 times what it moves.
+        let moved = self.moved(distance, most, least * self.shortest);
+        16.0 * (moved + moved * moved) + 40.0 * self.unit
     }
 }
 
@@ -79,8 +82,9 @@ pub struct ExactCamera {
 }
 
 impl ExactCamera {
-    /// Of `scene` as the file has it, with the eye where `settings` put it.
-    pub fn new(scene: &Scene, settings: &Settings) -> Self {
+    /// Of the scene as the file has it.
+    pub fn new(viewed: &ViewedScene) -> Self {
+        let (scene, settings) = viewed.in_file();
         let window = scene.window;
         let [left, right, top, bottom] = [window.left, window.right, window.top, window.bottom].map(exact);
         let [columns, rows] =
@@ -130,13 +134,13 @@ pub struct ExactScene {
 }
 
 impl ExactScene {
-    /// Of `scene` as the file has it; without `true_axes` each sphere is its bounding sphere.
-    pub fn new(scene: &Scene, settings: &Settings, true_axes: bool) -> Self {
+    /// Of the scene as the file has it; without `true_axes` each sphere is its bounding sphere.
+    pub fn new(viewed: &ViewedScene, true_axes: bool) -> Self {
         let sphere = |sphere: &Sphere| {
             let scale = sphere.scale.abs();
             [sphere.center, if true_axes { scale } else { DVec3::splat(scale.max_element()) }]
         };
-        Self { camera: ExactCamera::new(scene, settings), spheres: scene.spheres.iter().map(sphere).collect() }
+        Self { camera: ExactCamera::new(viewed), spheres: viewed.in_file().0.spheres.iter().map(sphere).collect() }
     }
 
     /// The sign of B² − AC for the ray of a sample, by its column and row, and the sphere with this index.

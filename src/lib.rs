@@ -35,9 +35,10 @@
 //! Two pictures are compared by [`Difference::between`]. The folder `examples` has whole programs. What the documentation does not
 //! show is the program's own and may change.
 
-// The data walk: scene text → scene::Scene → effects::Effects → lists of spheres (accel) → packed tables → composed WGSL and
-// constants → SPIR-V of each kernel → stages of dispatches → rows of pixels → file. `cpu` and `gpu` never see each other; both read
-// scene, effects, camera, geometry, accel and sampling. Modules are public for the tests, which are a crate of their own.
+// The data walk: scene text → scene::Scene → viewed::ViewedScene, moved to the eye → effects::Effects → lists of spheres (accel) →
+// packed tables → composed WGSL and constants → SPIR-V of each kernel → stages of dispatches → rows of pixels → file. `cpu` and `gpu`
+// never see each other; both read viewed, effects, camera, geometry, accel and sampling. Modules are public for the tests, which are
+// a crate of their own.
 #[doc(hidden)]
 pub mod accel;
 mod atomic;
@@ -99,6 +100,8 @@ pub mod tuning;
 pub mod verify;
 #[doc(hidden)]
 pub mod view;
+#[doc(hidden)]
+pub mod viewed;
 #[cfg(feature = "view")]
 #[doc(hidden)]
 pub mod viewer;

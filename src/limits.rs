@@ -4,9 +4,9 @@ use rayon::prelude::*;
 
 use crate::brightness::{Brightness, Scalar};
 use crate::effects::{Effect, Effects};
-use crate::geometry::{Units, extent};
-use crate::scene::{Scene, Window};
-use crate::settings::Settings;
+use crate::geometry::extent;
+use crate::scene::Scene;
+use crate::viewed::ViewedScene;
 
 /// How many times larger than any semi-axis the whole scene may be, so that squares of the way to a light in semi-axes stay within
 /// `f64`.
@@ -18,13 +18,15 @@ const MAX_WINDOW: f64 = 1e50;
 /// How many times larger or smaller than the scene the window may be.
 const MAX_PLANE: f64 = 1e250;
 
-/// Why `scene` cannot be rendered at all; `None` where it can.
-pub fn problem(scene: &Scene, settings: &Settings, effects: &Effects) -> Option<String> {
-    sizes(scene, settings).or_else(|| Brightness::of(scene, effects).problem(scene, Scalar::Double))
+/// Why `viewed` cannot be rendered at all; `None` where it can.
+pub fn problem(viewed: &ViewedScene, effects: &Effects) -> Option<String> {
+    let scene = viewed.scene();
+    sizes(viewed).or_else(|| Brightness::of(scene, effects).problem(scene, Scalar::Double))
 }
 
-/// Why kernels of this scalar cannot render `scene`, which can be rendered and is in their units; `None` where they can.
-pub fn problem_in(scalar: Scalar, scene: &Scene, effects: &Effects) -> Option<String> {
+/// Why kernels of this scalar cannot render `viewed`, which can be rendered; `None` where they can.
+pub fn problem_in(scalar: Scalar, viewed: &ViewedScene, effects: &Effects) -> Option<String> {
+    let scene = viewed.scene();
     let world = || {
         let reach = reach(scene, effects);
         let name = name_of_small(scene, |axis| axis * MAX_SINGLE < reach)?;
@@ -49,27 +51,25 @@ fn name_of_small(scene: &Scene, is_small: impl Fn(f64) -> bool + Sync) -> Option
 }
 
 /// What is too large or too small beside the rest.
-fn sizes(scene: &Scene, settings: &Settings) -> Option<String> {
-    let world = settings.view.relative(scene);
+fn sizes(viewed: &ViewedScene) -> Option<String> {
+    let (scene, greatest) = (viewed.scene(), viewed.greatest());
     let sphere = |index: usize| format!("sphere '{}'", scene.sphere_names.shown(index));
     let light = |index: usize| format!("light '{}'", scene.light_names.shown(index));
-    let Units { factor, greatest, .. } = Units::of(&world, settings.secondary);
 
-    let far_sphere = || world.spheres.par_iter().position_first(|s| !s.center.is_finite()).map(sphere);
-    let far_light = world.lights.iter().position(|light| !light.position.is_finite()).map(light);
+    let far_sphere = || scene.spheres.par_iter().position_first(|s| !s.center.is_finite()).map(sphere);
+    let far_light = scene.lights.iter().position(|light| !light.position.is_finite()).map(light);
     if let Some(name) = far_light.or_else(|| if greatest.is_finite() { None } else { far_sphere() }) {
         return Some(format!("{name} is so far from the eye that f64 cannot hold the distance"));
     }
-    if let Some(name) = name_of_small(&world, |axis| axis * factor * MAX_WORLD < greatest) {
+    if let Some(name) = name_of_small(scene, |axis| axis * MAX_WORLD < greatest) {
         return Some(format!("the scene is more than {MAX_WORLD:.0e} times larger than the least semi-axis of {name}"));
     }
 
-    let Window { near, left, right, bottom, top } = scene.window;
-    let window = [left, right, bottom, top].iter().fold(near, |greatest, edge| greatest.max(edge.abs()));
-    if window / near > MAX_WINDOW {
+    let in_file = viewed.in_file().0.window;
+    if in_file.greatest() / in_file.near > MAX_WINDOW {
         return Some(format!("the window is more than {MAX_WINDOW:.0e} times larger than NEAR"));
     }
-    let fits = |x: f64| x * factor <= greatest * MAX_PLANE && x * factor * MAX_PLANE >= greatest;
-    (greatest > 0.0 && !(fits(window) && fits(near)))
+    let fits = |x: f64| x <= greatest * MAX_PLANE && x * MAX_PLANE >= greatest;
+    (greatest > 0.0 && !(fits(scene.window.greatest()) && fits(scene.window.near)))
         .then(|| format!("NEAR or the window is more than {MAX_PLANE:.0e} times larger or smaller than the scene"))
 }

@@ -2,8 +2,9 @@
 
 use std::fmt;
 
-use crate::scene::{MAX_RESOLUTION, Scene};
+use crate::scene::MAX_RESOLUTION;
 use crate::settings::Settings;
+use crate::viewed::ViewedScene;
 
 /// What is asked for makes no sense.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -66,8 +67,9 @@ impl fmt::Display for Misuse {
 
 impl std::error::Error for Misuse {}
 
-/// Whether there is such a picture of `scene`.
-pub(crate) fn check_picture(scene: &Scene, settings: &Settings) -> Result<(), Misuse> {
+/// Whether there is such a picture of `viewed`.
+pub(crate) fn check_picture(viewed: &ViewedScene) -> Result<(), Misuse> {
+    let (scene, settings) = (viewed.scene(), viewed.settings());
     let numbers = [
         ("width", scene.width, 1..=MAX_RESOLUTION),
         ("height", scene.height, 1..=MAX_RESOLUTION),

@@ -9,10 +9,9 @@ use serde::Serialize;
 
 use crate::brightness::{Brightness, Scalar};
 use crate::effects::{Effect, Effects};
-use crate::geometry::Units;
 use crate::limits;
 use crate::scene::Scene;
-use crate::settings::{Secondary, Settings};
+use crate::viewed::ViewedScene;
 
 mod outline;
 mod share;
@@ -172,11 +171,10 @@ const MAX_PAIRWISE: usize = 2000;
 const CHUNK: usize = 4096;
 
 impl Demand {
-    /// What `scene` demands where `effects` are simulated.
-    pub fn of(scene: &Scene, settings: &Settings, effects: &Effects) -> Self {
-        // The brightness aside, all of it is the same in any units: in those of kernels no square leaves the range.
-        let scene = settings.view.relative(scene);
-        let scene = &*Units::of(&scene, Secondary::EXACT).applied_to(scene);
+    /// What `viewed` demands where `effects` are simulated.
+    pub fn of(viewed: &ViewedScene, effects: &Effects) -> Self {
+        // The brightness aside, all of it is the same in any units: in these no square leaves the range.
+        let scene = viewed.scene();
         let (brightness, reach) = (Brightness::of(scene, effects), limits::reach(scene, effects));
         let count = scene.spheres.len();
         let chunk = |chunk: usize| {
@@ -186,7 +184,7 @@ impl Demand {
         };
         let demand = (0..count.div_ceil(CHUNK)).into_par_iter().map(chunk).reduce(Self::none, |a, b| a.and(&b));
         Self {
-            share: Shares::new(scene, settings.view.axes(), effects).estimate(&nested(scene)),
+            share: Shares::new(scene, viewed.settings().view.axes(), effects).estimate(&nested(scene)),
             brightness: Extreme { value: brightness.greatest(), sphere: brightness.sphere },
             ..demand
         }
@@ -338,10 +336,10 @@ pub struct Selection {
 }
 
 impl Selection {
-    /// The tier asked for, or the first one of `ladder` whose promise covers `scene`; where none does, `double`.
-    pub fn of(scene: &Scene, settings: &Settings, effects: &Effects, request: Request, ladder: &[Tier]) -> Self {
-        let demand = Demand::of(scene, settings, effects);
-        let excess = |tier| demand.beyond(tier, scene);
+    /// The tier asked for, or the first one of `ladder` whose promise covers `viewed`; where none does, `double`.
+    pub fn of(viewed: &ViewedScene, effects: &Effects, request: Request, ladder: &[Tier]) -> Self {
+        let demand = Demand::of(viewed, effects);
+        let excess = |tier| demand.beyond(tier, viewed.scene());
         let (tier, reason) = if let Some(tier) = request.0 {
             let why = excess(tier).map_or_else(|| "covers the scene".into(), |why| format!("not covered: {why}"));
             (tier, format!("asked for; {why}"))

@@ -9,11 +9,12 @@ use crate::engine::{Backend, Engine, Options, render_picture};
 use crate::film::{OutputError, Picture, PictureError, ReadError};
 use crate::gpu::{self, Choice, Gpu, USUAL_KERNELS};
 use crate::limits;
-use crate::misuse::Misuse;
+use crate::misuse::{Misuse, check_picture};
 use crate::precision::{Request, Selection, Tier};
 use crate::scene::{Invalid, Scene, SceneError};
 use crate::settings::Settings;
 use crate::verify::Verify;
+use crate::viewed::ViewedScene;
 
 /// What renders: a Vulkan device, or the CPU reference.
 ///
@@ -103,10 +104,10 @@ impl Renderer {
     /// hold what follows from them; [`Error::Device`] where the device fails, cannot hold the scene, or shows pixels that differ from
     /// the reference's by more than rounding explains.
     pub fn render(&self, scene: &Scene, settings: &Settings) -> Result<Picture, Error> {
-        let effects = renderable(scene, settings)?;
-        let backend = self.backend(scene, settings, &effects);
+        let (viewed, effects) = renderable(scene, settings)?;
+        let backend = self.backend(&viewed, &effects);
         let verify = self.verify.unwrap_or_else(|| Verify::usual(scene));
-        let mut engine = Engine::verified(backend, scene, settings, &effects, &Options::default(), verify)?;
+        let mut engine = Engine::verified(backend, viewed, &effects, &Options::default(), verify)?;
         let (rgb, _) = render_picture(&mut engine)?;
         Ok(Picture::new(scene.width, scene.height, rgb)?)
     }
@@ -118,30 +119,35 @@ impl Renderer {
     ///
     /// As of [`Renderer::render`]; [`Error::Size`] where the picture has not the scene's size.
     pub fn explain(&self, picture: &Picture, scene: &Scene, settings: &Settings) -> Result<Explanation, Error> {
-        let effects = renderable(scene, settings)?;
+        let (viewed, effects) = renderable(scene, settings)?;
         SizeMismatch::of((picture.width(), picture.height()), (scene.width, scene.height))?;
-        let judge = self.backend(scene, settings, &effects).judge();
-        let expected = Self::reference().render(scene, settings)?;
-        let reference = Reference::new(scene, settings, &effects);
+        let judge = self.backend(&viewed, &effects).judge();
+        check_picture(&viewed)?;
+        let reference = Reference::new(&viewed, &effects);
+        drop(viewed);
+        let mut rgb = vec![0; scene.width as usize * scene.height as usize * 3];
+        reference.rows(0, &mut rgb)?;
+        let expected = Picture::new(scene.width, scene.height, rgb)?;
         Ok(Explanation::of(picture, &expected, &reference, &judge))
     }
 
-    fn backend(&self, scene: &Scene, settings: &Settings, effects: &Effects) -> Backend<'_> {
+    fn backend(&self, viewed: &ViewedScene, effects: &Effects) -> Backend<'_> {
         let device = |gpu| {
-            let tier = Selection::of(scene, settings, effects, self.precision, Gpu::ladder(gpu)).tier;
+            let tier = Selection::of(viewed, effects, self.precision, Gpu::ladder(gpu)).tier;
             Backend::Device(gpu, tier)
         };
         self.gpu.as_ref().map_or(Backend::Reference, device)
     }
 }
 
-/// The effects of a scene that has a picture.
-fn renderable(scene: &Scene, settings: &Settings) -> Result<Effects, Error> {
+/// A scene that has a picture, as its eye sees it, and its effects.
+fn renderable<'a>(scene: &'a Scene, settings: &Settings) -> Result<(ViewedScene<'a>, Effects), Error> {
     scene.check()?;
-    let effects = Effects::of(scene, settings);
-    match effects.too_deep(scene).or_else(|| limits::problem(scene, settings, &effects)) {
+    let viewed = scene.viewed(settings);
+    let effects = Effects::of(&viewed);
+    match effects.too_deep(scene).or_else(|| limits::problem(&viewed, &effects)) {
         Some(why) => Err(Error::Unrenderable(why)),
-        None => Ok(effects),
+        None => Ok((viewed, effects)),
     }
 }
 

@@ -15,7 +15,7 @@ use crate::effects::Effects;
 use crate::gpu::Error;
 use crate::random::Random;
 use crate::scene::Scene;
-use crate::settings::Settings;
+use crate::viewed::ViewedScene;
 
 /// How many pixels of a device's picture are held against the reference.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -78,8 +78,7 @@ pub(crate) struct Verifier {
 impl Verifier {
     /// For a picture by a renderer whose rounding `judge` knows and whose lists of spheres are `accel`.
     pub(crate) fn new(
-        scene: &Scene,
-        settings: &Settings,
+        viewed: &ViewedScene,
         effects: &Effects,
         accel: Acceleration,
         judge: Judge,
@@ -88,10 +87,10 @@ impl Verifier {
         let start = Instant::now();
         let pixels = match verify {
             Verify::Nothing => return None,
-            Verify::Some(count) => Some(chosen(scene, &accel.screen.cover(), count.get())),
+            Verify::Some(count) => Some(chosen(viewed.in_file().0, &accel.screen.cover(), count.get())),
             Verify::All => None,
         };
-        let reference = Reference::with_lists(scene, settings, effects, accel);
+        let reference = Reference::with_lists(viewed, effects, accel);
         Some(Self { reference, judge, pixels, verified: 0, took: start.elapsed() })
     }
 

@@ -1,20 +1,16 @@
 //! Where the eye is and where it looks.
 
-use std::borrow::Cow;
 use std::fmt;
 
 use glam::DVec3;
 use serde::{Serialize, Serializer};
-
-use crate::scene::Scene;
 
 /// Below this sine of the angle between the view and the upward direction, rounding would choose the picture's rotation.
 const LEAST_SINE: f64 = 1e-9;
 
 /// The eye and the axes of the picture in the world, orthonormal. The default is the scene file's camera.
 ///
-/// Renderers keep the eye at the origin: [`View::relative`] moves the scene instead, in `f64`, so that what is near the eye
-/// stays exact to single precision wherever the eye is.
+/// Renderers keep the eye at the origin: the scene is moved instead, so that what is near the eye stays exact wherever that is.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct View {
     /// The eye in the world.
@@ -85,19 +81,8 @@ impl View {
 
     /// The same axes with the eye at the origin.
     #[must_use]
-    pub fn at_origin(self) -> Self {
+    pub(crate) fn at_origin(self) -> Self {
         Self { eye: DVec3::ZERO, ..self }
-    }
-
-    /// `scene` with the eye at the origin; its axes stay those of the world.
-    pub fn relative<'a>(&self, scene: &'a Scene) -> Cow<'a, Scene> {
-        if self.eye == DVec3::ZERO {
-            return Cow::Borrowed(scene);
-        }
-        let mut scene = scene.clone();
-        scene.spheres.iter_mut().for_each(|sphere| sphere.center -= self.eye);
-        scene.lights.iter_mut().for_each(|light| light.position -= self.eye);
-        Cow::Owned(scene)
     }
 
     /// The picture's axes in the world: to the right, upwards, and against the direction of view.

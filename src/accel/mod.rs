@@ -15,7 +15,7 @@ use glam::DVec3;
 
 use crate::camera::Camera;
 use crate::effects::{Effect, EffectSet};
-use crate::scene::Scene;
+use crate::viewed::ViewedScene;
 use bounds::Enclosure;
 
 pub use bounds::Rounding;
@@ -37,34 +37,29 @@ pub struct Acceleration {
 }
 
 impl Acceleration {
-    /// The lists that the effects of `scene` call for, for a renderer that rounds like this.
-    pub fn new(scene: &Scene, camera: &Camera, effects: EffectSet, rounding: Rounding) -> Self {
-        Self::with_density(scene, camera, effects, rounding, &Density::DEFAULT)
+    /// The lists that the effects of `viewed` call for, for a renderer that rounds like this.
+    pub fn new(viewed: &ViewedScene, effects: EffectSet, rounding: Rounding) -> Self {
+        Self::with_density(viewed, effects, rounding, &Density::DEFAULT)
     }
 
     /// Likewise, as fine as `density` says.
-    pub fn with_density(
-        scene: &Scene,
-        camera: &Camera,
-        effects: EffectSet,
-        rounding: Rounding,
-        density: &Density,
-    ) -> Self {
+    pub fn with_density(viewed: &ViewedScene, effects: EffectSet, rounding: Rounding, density: &Density) -> Self {
+        let (scene, camera) = (viewed.scene(), Camera::new(viewed));
         let enclosure = Enclosure::new(scene, effects.has(Effect::Ellipsoids), rounding);
         let lights: Vec<DVec3> = scene.lights.iter().map(|light| light.position).collect();
         let lit = effects.has(Effect::Shadows);
         let spheres = scene.spheres.len();
         let entries = density.entries_of_a_light(spheres, lights.len());
         Self {
-            screen: ScreenLists::new(&enclosure, camera, density.longest_tile),
+            screen: ScreenLists::new(&enclosure, &camera, density.longest_tile),
             lights: LightBuffer::new(&enclosure, if lit { &lights } else { &[] }, entries, rounding),
             grid: Self::grid_in(&enclosure, effects, rounding, density),
         }
     }
 
     /// The grid alone.
-    pub fn grid_of(scene: &Scene, effects: EffectSet, rounding: Rounding, density: &Density) -> Option<Grid> {
-        let enclosure = Enclosure::new(scene, effects.has(Effect::Ellipsoids), rounding);
+    pub fn grid_of(viewed: &ViewedScene, effects: EffectSet, rounding: Rounding, density: &Density) -> Option<Grid> {
+        let enclosure = Enclosure::new(viewed.scene(), effects.has(Effect::Ellipsoids), rounding);
         Self::grid_in(&enclosure, effects, rounding, density)
     }
 

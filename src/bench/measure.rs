@@ -15,6 +15,7 @@ use crate::report::number::time;
 use crate::report::{Skipped, Timings};
 use crate::scene::Scene;
 use crate::settings::Settings;
+use crate::viewed::ViewedScene;
 
 /// By how much a forecast has to exceed the budget before a scene is not even tried.
 const DOUBT: f64 = 2.0;
@@ -51,9 +52,9 @@ pub struct RenderSetup<'a> {
     /// Width and height in place of each scene's own.
     pub resolution: Option<(u32, u32)>,
     /// What is simulated.
-    pub effects: &'a dyn Fn(&Scene) -> Effects,
+    pub effects: &'a dyn Fn(&ViewedScene) -> Effects,
     /// The tier for a scene.
-    pub selection: &'a dyn Fn(&Scene, &Effects) -> Selection,
+    pub selection: &'a dyn Fn(&ViewedScene, &Effects) -> Selection,
 }
 
 /// Who renders a scene.
@@ -252,7 +253,7 @@ impl Contestant<'_> {
     fn run(&mut self, scene: &Scene, setup: &RenderSetup, effects: &Effects, count: bool) -> Result<f64, gpu::Error> {
         let start = Instant::now();
         let options = Options { count_rays: count, ..Options::default() };
-        let mut engine: Engine = Engine::with(self.backend, scene, setup.settings, effects, &options)?;
+        let mut engine: Engine = Engine::with(self.backend, scene.viewed(setup.settings), effects, &options)?;
         engine.rows(0, &mut self.rgb)?;
         let wall_ms = start.elapsed().as_secs_f64() * 1e3;
         let times = engine.times();
@@ -286,8 +287,10 @@ fn measure_scene(
     if let Some((width, height)) = setup.resolution {
         (scene.width, scene.height) = (width, height);
     }
-    let effects = (setup.effects)(&scene);
-    let tier = (setup.selection)(&scene, &effects).tier;
+    let viewed = scene.viewed(setup.settings);
+    let effects = (setup.effects)(&viewed);
+    let tier = (setup.selection)(&viewed, &effects).tier;
+    drop(viewed);
     let mut skipped = Vec::new();
     let mut contestants = Vec::new();
     for forecast in forecasts {

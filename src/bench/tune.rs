@@ -13,6 +13,7 @@ use crate::report::Timings;
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::tuning::{KNOBS, Knob, Tuning};
+use crate::viewed::ViewedScene;
 
 /// A candidate has to be this much faster than what it replaces.
 const WORTHWHILE: f64 = 0.97;
@@ -43,7 +44,7 @@ pub struct TunePlan<'a> {
     /// Width and height in place of each scene's own.
     pub resolution: Option<(u32, u32)>,
     /// What is simulated, and the tier, for a scene.
-    pub choice: &'a dyn Fn(&Gpu, &Scene) -> (Effects, Tier),
+    pub choice: &'a dyn Fn(&Gpu, &ViewedScene) -> (Effects, Tier),
 }
 
 /// One value of a number.
@@ -119,7 +120,7 @@ fn tune_knob(gpu: &mut Gpu, plan: &TunePlan, knob: &Knob, best: &Tuning) -> Resu
             if let Some((width, height)) = plan.resolution {
                 (scene.width, scene.height) = (width, height);
             }
-            let (effects, tier) = (plan.choice)(gpu, &scene);
+            let (effects, tier) = (plan.choice)(gpu, &scene.viewed(plan.settings));
             (name, Workload { scene, effects, tier, picture: None })
         })
         .unzip();
@@ -176,7 +177,7 @@ fn fits(gpu: &Gpu, knob: &Knob, value: f64) -> bool {
 impl Workload {
     /// Renders once and returns the time, in ms. Another picture than before is an error: no tuning may change one.
     fn render(&mut self, gpu: &Gpu, settings: &Settings, tuning: &Tuning) -> Result<f64, Error> {
-        let mut engine = Engine::new(Backend::Device(gpu, self.tier), &self.scene, settings, &self.effects)?;
+        let mut engine = Engine::new(Backend::Device(gpu, self.tier), self.scene.viewed(settings), &self.effects)?;
         let (rgb, _) = render_picture(&mut engine)?;
         let times = engine.times();
         match &self.picture {

@@ -80,8 +80,8 @@ fn run_bench(args: &Args) -> Result<(), Failure> {
         gpu: gpu.as_ref(),
         settings: &settings,
         resolution: args.picture.resolution(),
-        effects: &|scene| args.picture.effects(scene, &settings),
-        selection: &|scene, effects| args.device.selection(gpu.as_ref(), scene, &settings, effects),
+        effects: &|viewed| args.picture.effects(viewed),
+        selection: &|viewed, effects| args.device.selection(gpu.as_ref(), viewed, effects),
     };
     let plan = BenchPlan {
         families,

@@ -105,7 +105,8 @@ type DVec3Json = [f64; 3];
 
 impl Contents {
     fn new(scene: &Scene, picture: &PictureOptions, settings: &Settings) -> Self {
-        let effects = picture.effects(scene, settings);
+        let viewed = scene.viewed(settings);
+        let effects = picture.effects(&viewed);
         let bounds = scene.spheres.iter().map(|s| (s.center - s.scale.abs(), s.center + s.scale.abs()));
         let extent = bounds.reduce(|(a, b), (c, d)| (a.min(c), b.max(d)));
         let axes = scene.spheres.iter().map(|s| (s.scale.abs().min_element(), s.scale.abs().max_element()));
@@ -118,8 +119,8 @@ impl Contents {
             semi_axes: axes.reduce(|(a, b), (c, d)| (a.min(c), b.max(d))).map(|(low, high)| [low, high]),
             refractive_spheres: scene.spheres.iter().filter(|sphere| sphere.kt != 0.0).count(),
             output: scene.output.clone(),
-            refused: limits::problem(scene, settings, &effects),
-            precision: Selection::of(scene, settings, &effects, precision::Request::default(), &Tier::ALL),
+            refused: limits::problem(&viewed, &effects),
+            precision: Selection::of(&viewed, &effects, precision::Request::default(), &Tier::ALL),
             effects,
         }
     }

@@ -19,7 +19,7 @@ use crate::engine::{Backend, Engine, device_name, render_picture};
 use crate::film::{Encoded, Leniency, Picture, ReadError, Target};
 use crate::gpu::Choice;
 use crate::scene::Scene;
-use crate::settings::Settings;
+use crate::viewed::ViewedScene;
 use crate::words::{count, visible};
 
 /// Arguments of `trueray compare`.
@@ -228,10 +228,12 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Pair,
         }
     }
     let settings = args.picture.settings()?;
-    let effects = args.picture.renderable_effects(scene, &settings)?;
+    let viewed = scene.viewed(&settings);
+    let effects = args.picture.renderable_effects(&viewed)?;
     let (name, picture, not_finite, judge) = if let Some((name, encoded)) = encoded {
         let picture = decode(args, &name, encoded, "the picture", &mut remarks)?;
-        let judge = judge_of_unknown(&args.device, scene, &settings, &effects)?;
+        let judge = judge_of_unknown(&args.device, &viewed, &effects)?;
+        drop(viewed);
         (name, picture, None, judge)
     } else {
         // Comparing the reference with itself would say nothing: auto means a device here.
@@ -240,16 +242,16 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Pair,
             return Err(Failure::new(USAGE, "--device cpu would compare the reference with itself"));
         }
         let gpu = open_device(choice)?;
-        let tier = args.device.selection(Some(&gpu), scene, &settings, &effects).tier;
+        let tier = args.device.selection(Some(&gpu), &viewed, &effects).tier;
         let backend = Backend::Device(&gpu, tier);
-        let mut engine = Engine::new(backend, scene, &settings, &effects)?;
+        let mut engine = Engine::new(backend, viewed, &effects)?;
         let (rgb, not_finite) = render_picture(&mut engine)?;
         let name = format!("{}, {tier}", device_name(Some(&gpu)));
         (name, self::picture(scene, rgb)?, Some(not_finite), backend.judge())
     };
-    let (rgb, _) = render_picture(&mut Engine::new(Backend::Reference, scene, &settings, &effects)?)?;
+    let (rgb, _) = render_picture(&mut Engine::new(Backend::Reference, scene.viewed(&settings), &effects)?)?;
     let expected = self::picture(scene, rgb)?;
-    let reference = Reference::new(scene, &settings, &effects);
+    let reference = Reference::new(&scene.viewed(&settings), &effects);
     let explanation = Explanation::of(&picture, &expected, &reference, &judge);
     let names = [name, format!("reference of {}", loaded.name)];
     Ok(Pair { names, pictures: [picture, expected], remarks, explanation: Some(explanation), not_finite })
@@ -257,12 +259,7 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Pair,
 
 /// The judge of a picture of unknown origin: as if it came from the device that is asked for or, for auto, from the one that would render
 /// here, at the tier that is asked for or that covers the scene there.
-fn judge_of_unknown(
-    device: &DeviceOptions,
-    scene: &Scene,
-    settings: &Settings,
-    effects: &Effects,
-) -> Result<Judge, Failure> {
+fn judge_of_unknown(device: &DeviceOptions, viewed: &ViewedScene, effects: &Effects) -> Result<Judge, Failure> {
     let gpu = match &device.device {
         Choice::Cpu => return Ok(device.precision.0.map_or(Backend::Reference.judge(), Judge::of)),
         // The picture is there without a device, too.
@@ -273,7 +270,7 @@ fn judge_of_unknown(
             .ok(),
         choice => Some(open_device(choice)?),
     };
-    let tier = device.selection(gpu.as_ref(), scene, settings, effects).tier;
+    let tier = device.selection(gpu.as_ref(), viewed, effects).tier;
     Ok(gpu.map_or_else(|| Judge::of(tier), |gpu| Backend::Device(&gpu, tier).judge()))
 }
 

@@ -39,10 +39,12 @@ fn run_export(args: &Args) -> Result<(), Failure> {
     let mut loaded = Loaded::read(&args.scene, false)?;
     args.picture.resize(&mut loaded.scene);
     let (scene, settings) = (&loaded.scene, args.picture.settings()?);
-    let effects = args.picture.effects(scene, &settings);
-    if effects != Effects::of(scene, &settings) {
+    let viewed = scene.viewed(&settings);
+    let effects = args.picture.effects(&viewed);
+    if effects != Effects::of(&viewed) {
         return Err(Failure::new(USAGE, "a scene is exported with what it calls for: leave --effects out"));
     }
+    drop(viewed);
     let export =
         export(scene, &settings, &effects, args.to).map_err(|obstacles| refusal(args.to, &loaded, &obstacles))?;
     for warning in &export.warnings {

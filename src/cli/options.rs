@@ -12,6 +12,7 @@ use crate::precision::{self, Selection, Tier};
 use crate::scene::{Scene, resolution};
 use crate::settings::{Convention, Quantize, SampleOffset, Secondary, Settings, Specular};
 use crate::view::View;
+use crate::viewed::ViewedScene;
 #[cfg(feature = "view")]
 use crate::viewer::{FlightScale, Pose, ViewState};
 
@@ -99,8 +100,8 @@ impl PictureOptions {
         Ok(ViewState { pose, settings, effects: self.effects.clone(), precision, res: self.res })
     }
 
-    pub(super) fn effects(&self, scene: &Scene, settings: &Settings) -> Effects {
-        Effects::requested(scene, settings, &self.effects)
+    pub(super) fn effects(&self, viewed: &ViewedScene) -> Effects {
+        Effects::requested(viewed, &self.effects)
     }
 
     /// The size that `--res` asks for.
@@ -109,13 +110,13 @@ impl PictureOptions {
     }
 
     /// The same, or a refusal where so deep a tree of rays would never end, or where not even `f64` renders the scene.
-    pub(super) fn renderable_effects(&self, scene: &Scene, settings: &Settings) -> Result<Effects, Failure> {
-        let effects = self.effects(scene, settings);
-        if let Some(why) = effects.too_deep(scene) {
+    pub(super) fn renderable_effects(&self, viewed: &ViewedScene) -> Result<Effects, Failure> {
+        let effects = self.effects(viewed);
+        if let Some(why) = effects.too_deep(viewed.scene()) {
             let help = format!("help: --max-depth {} is the most for this scene", Effects::MAX_WAITING);
             return Err(Failure::new(USAGE, format!("{why}\n  {help}")));
         }
-        if let Some(why) = limits::problem(scene, settings, &effects) {
+        if let Some(why) = limits::problem(viewed, &effects) {
             return Err(Failure::new(SCENE, format!("the scene cannot be rendered: {why}")));
         }
         Ok(effects)
@@ -193,15 +194,9 @@ impl DeviceOptions {
         self.device != Choice::Cpu
     }
 
-    /// The tier that renders `scene` on `gpu`, or would on hardware where there is none.
-    pub(super) fn selection(
-        &self,
-        gpu: Option<&Gpu>,
-        scene: &Scene,
-        settings: &Settings,
-        effects: &Effects,
-    ) -> Selection {
-        Selection::of(scene, settings, effects, self.precision, gpu.map_or(&Tier::ALL, Gpu::ladder))
+    /// The tier that renders `viewed` on `gpu`, or would on hardware where there is none.
+    pub(super) fn selection(&self, gpu: Option<&Gpu>, viewed: &ViewedScene, effects: &Effects) -> Selection {
+        Selection::of(viewed, effects, self.precision, gpu.map_or(&Tier::ALL, Gpu::ladder))
     }
 }
 

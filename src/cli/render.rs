@@ -167,8 +167,9 @@ impl Args {
         if !self.device.uses_vulkan() {
             return None;
         }
-        let effects = self.picture.renderable_effects(scene, settings).ok()?;
-        Ahead::of(scene, settings, &effects, self.device.precision)
+        let viewed = scene.viewed(settings);
+        let effects = self.picture.renderable_effects(&viewed).ok()?;
+        Ahead::of(&viewed, &effects, self.device.precision)
     }
 }
 
@@ -189,8 +190,9 @@ fn render_one(
     args.picture.resize(&mut loaded.scene);
     let scene = &loaded.scene;
     let choice = args.sampling.choice((scene.width, scene.height))?;
-    let effects = args.picture.renderable_effects(scene, settings)?;
-    let selection = args.device.selection(gpu, scene, settings, &effects);
+    let viewed = scene.viewed(settings);
+    let effects = args.picture.renderable_effects(&viewed)?;
+    let selection = args.device.selection(gpu, &viewed, &effects);
     if args.explain || args.verbose {
         let sampling = choice.as_ref().map(Choice::explanation).unwrap_or_default();
         err!("{}{}{sampling}", explanation(&loaded.name, &effects), precision_explanation(&selection));
@@ -202,10 +204,8 @@ fn render_one(
     let options = Options { count_rays: wants_stats && !args.no_ray_counts, ..Options::default() };
     let verify = args.verify.unwrap_or_else(|| Verify::usual(scene));
     let mut renderer = match choice {
-        None => Renderer::Whole(Engine::verified(backend, scene, settings, &effects, &options, verify)?),
-        Some(choice) => {
-            Renderer::InPart(Engine::verified(backend, scene, settings, &effects, &options, verify)?, choice)
-        }
+        None => Renderer::Whole(Engine::verified(backend, viewed, &effects, &options, verify)?),
+        Some(choice) => Renderer::InPart(Engine::verified(backend, viewed, &effects, &options, verify)?, choice),
     };
     // The renderer has what it needs: the spheres go before paths and pixels take memory.
     let (width, height) = (scene.width, scene.height);

@@ -46,13 +46,14 @@ fn print(args: &Args) -> Result<(), Failure> {
     args.picture.resize(&mut loaded.scene);
     let scene = &loaded.scene;
     let is_in_part = args.sampling.choice((scene.width, scene.height))?.is_some();
-    let effects = args.picture.renderable_effects(scene, &settings)?;
+    let viewed = scene.viewed(&settings);
+    let effects = args.picture.renderable_effects(&viewed)?;
     let gpu = open_device(&args.device.device)?;
-    let tier = args.device.selection(Some(&gpu), scene, &settings, &effects).tier;
+    let tier = args.device.selection(Some(&gpu), &viewed, &effects).tier;
     let kernels = if is_in_part {
-        *GpuRenderer::<Pixels>::with(&gpu, scene, &settings, &effects, tier, &Options::default())?.specialisation()
+        *GpuRenderer::<Pixels>::with(&gpu, &viewed, &effects, tier, &Options::default())?.specialisation()
     } else {
-        *GpuRenderer::<Rows>::with(&gpu, scene, &settings, &effects, tier, &Options::default())?.specialisation()
+        *GpuRenderer::<Rows>::with(&gpu, &viewed, &effects, tier, &Options::default())?.specialisation()
     };
     let entry = chosen(args.entry.as_deref(), &kernels)?;
     let comment = if args.spirv { ";" } else { "//" };

@@ -14,6 +14,7 @@ use super::reports::Reports;
 use super::signals::{say_last, say_nothing};
 use crate::settings::Settings;
 use crate::study::{Error, Event, HardCases, Skipped, Study, StudyInput, StudyPlan, csv, html};
+use crate::viewed::ViewedScene;
 
 /// Arguments of `trueray study`.
 #[derive(Debug, clap::Args)]
@@ -84,9 +85,11 @@ fn study(args: &Args) -> Result<(), Failure> {
         args.picture.resize(&mut loaded.scene);
         let scene = &loaded.scene;
         let deepest = plan.depths.iter().copied().fold(settings.max_depth, u32::max);
-        args.picture.renderable_effects(scene, &Settings { max_depth: deepest, ..settings })?;
-        let effects = |settings: &Settings| args.picture.effects(scene, settings);
-        let selection = args.device.selection(gpu.as_ref(), scene, &settings, &effects(&settings));
+        args.picture.renderable_effects(&scene.viewed(&Settings { max_depth: deepest, ..settings }))?;
+        let effects = |viewed: &ViewedScene| args.picture.effects(viewed);
+        let viewed = scene.viewed(&settings);
+        let selection = args.device.selection(gpu.as_ref(), &viewed, &effects(&viewed));
+        drop(viewed);
         let input = StudyInput {
             name: &loaded.name,
             scene,

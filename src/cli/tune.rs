@@ -8,8 +8,8 @@ use super::options::{DeviceOptions, PictureOptions, open_device};
 use super::output::out;
 use crate::bench::{TunePlan, tune};
 use crate::gpu::{Choice, Gpu, USUAL_KERNELS};
-use crate::scene::Scene;
 use crate::tuning::save;
+use crate::viewed::ViewedScene;
 use crate::words::count;
 
 /// Measures the candidates of every tuning number on the device, prints them, and keeps the best for later runs.
@@ -34,9 +34,9 @@ pub(super) fn run_tune(
         runs,
         settings: &settings,
         resolution: picture.resolution(),
-        choice: &|gpu: &Gpu, scene: &Scene| {
-            let effects = picture.effects(scene, &settings);
-            let tier = device.selection(Some(gpu), scene, &settings, &effects).tier;
+        choice: &|gpu: &Gpu, viewed: &ViewedScene| {
+            let effects = picture.effects(viewed);
+            let tier = device.selection(Some(gpu), viewed, &effects).tier;
             (effects, tier)
         },
     };

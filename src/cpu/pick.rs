@@ -8,10 +8,9 @@ use super::scene::Shape;
 use super::tangent::Tangents;
 use super::vec3::Vec3;
 use crate::camera::Camera;
-use crate::exact::ExactCamera;
-use crate::geometry::{Ellipsoid, in_range};
-use crate::scene::Scene;
-use crate::settings::Settings;
+use crate::exact::{ExactCamera, TangentMargin};
+use crate::geometry::Ellipsoid;
+use crate::viewed::ViewedScene;
 
 /// The first hit of a pixel's ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,23 +27,23 @@ pub struct PrimaryHit {
 
 /// What pixel (column `x`, row `y`) shows: that of its samples which is next to the middle. Tries every sphere once, which is
 /// less work for a single ray than any list.
-pub fn picked(scene: &Scene, settings: &Settings, x: u32, y: u32) -> Option<PrimaryHit> {
+pub fn picked(viewed: &ViewedScene, x: u32, y: u32) -> Option<PrimaryHit> {
+    let (scene, (file_scene, file_settings)) = (viewed.scene(), viewed.in_file());
     if x >= scene.width || y >= scene.height {
         return None;
     }
-    let (world, settings_in_range) = in_range(scene, settings);
-    let camera = Camera::new(&world, &settings_in_range);
-    let middle = settings.samples_per_side / 2;
-    let sample = [x, y].map(|at| at * settings.samples_per_side + middle);
+    let camera = Camera::new(viewed);
+    let middle = camera.samples_per_side() / 2;
+    let sample = [x, y].map(|at| at * camera.samples_per_side() + middle);
     let direction = camera.column(sample[0]) + camera.row(sample[1]);
     let ray = Ray::<f64> { origin: Vec3::ZERO, direction: Vec3::from_f64(direction) };
-    let exact = ExactCamera::new(scene, settings);
-    let eye = settings.view.eye.length() * (world.window.near / scene.window.near);
+    let exact = ExactCamera::new(viewed);
     let mut range = Range { t_min: camera.t_min(), t_max: f64::INFINITY, greater: true };
+    let margin = TangentMargin::new(viewed, f64::ROUNDING.tests);
     let mut nearest = None;
-    for (sphere, (ellipsoid, in_file)) in world.spheres.iter().zip(&scene.spheres).enumerate() {
+    for (sphere, (ellipsoid, in_file)) in scene.spheres.iter().zip(&file_scene.spheres).enumerate() {
         let ellipsoid = Ellipsoid::new(ellipsoid);
-        let tangents = Tangents::of(rayon::iter::once(ellipsoid), eye, &camera, f64::ROUNDING.tests);
+        let tangents = Tangents::of_one(margin, ellipsoid);
         let touches = || exact.discriminant(sample, in_file.center, in_file.scale);
         let Ellipsoid { center, inv_scale, radius, .. } = ellipsoid;
         let (center, inv_scale) = (Vec3::from_f64(center), Vec3::from_f64(inv_scale));
@@ -55,7 +54,7 @@ pub fn picked(scene: &Scene, settings: &Settings, x: u32, y: u32) -> Option<Prim
         }
     }
     let (sphere, inside) = nearest?;
-    // Back from the units of kernels: the two windows differ by their factor.
-    let from_eye = direction * range.t_max * (scene.window.near / world.window.near);
-    Some(PrimaryHit { sphere, t: range.t_max * camera.stretch(), position: settings.view.eye + from_eye, inside })
+    // Back from the units of kernels.
+    let position = file_settings.view.eye + direction * range.t_max * viewed.factor().recip();
+    Some(PrimaryHit { sphere, t: range.t_max * camera.stretch(), position, inside })
 }

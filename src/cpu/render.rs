@@ -11,12 +11,10 @@ use super::vec3::Vec3;
 use super::witness::Witness;
 use crate::accel::{Acceleration, Rounding};
 use crate::camera::Camera;
-use crate::effects::{Effect, Effects};
-use crate::exact::ExactScene;
-use crate::geometry::in_range;
+use crate::effects::Effects;
 use crate::misuse::{Misuse, check_pixels, check_rows};
-use crate::scene::Scene;
-use crate::settings::{Quantize, Settings};
+use crate::settings::Quantize;
+use crate::viewed::ViewedScene;
 
 /// The CPU reference: the whole specification, in the scalar `T`.
 #[derive(Debug, Clone)]
@@ -27,39 +25,21 @@ pub struct Reference<T> {
 }
 
 impl<T: Real> Reference<T> {
-    /// Prepares `scene` with `effects`, rounding its numbers once to `T`.
-    pub fn new(scene: &Scene, settings: &Settings, effects: &Effects) -> Self {
-        Self::with_rounding(scene, settings, effects, T::ROUNDING)
+    /// Prepares `viewed` with `effects`, rounding its numbers once to `T`.
+    pub fn new(viewed: &ViewedScene, effects: &Effects) -> Self {
+        Self::with_rounding(viewed, effects, T::ROUNDING)
     }
 
     /// Likewise, with lists of spheres for a renderer that rounds like this, at least like `T`.
-    pub fn with_rounding(scene: &Scene, settings: &Settings, effects: &Effects, rounding: Rounding) -> Self {
-        Self::prepared(scene, settings, effects, |scene, camera| {
-            Acceleration::new(scene, camera, effects.set, rounding)
-        })
+    pub fn with_rounding(viewed: &ViewedScene, effects: &Effects, rounding: Rounding) -> Self {
+        let accel = Acceleration::new(viewed, effects.set, rounding);
+        Self::with_lists(viewed, effects, accel)
     }
 
     /// Likewise, with lists of spheres that were made for another renderer of this scene, which rounds at least like `T`.
-    pub fn with_lists(scene: &Scene, settings: &Settings, effects: &Effects, accel: Acceleration) -> Self {
-        Self::prepared(scene, settings, effects, |_, _| accel)
-    }
-
-    fn prepared(
-        scene: &Scene,
-        settings: &Settings,
-        effects: &Effects,
-        accel: impl FnOnce(&Scene, &Camera) -> Acceleration,
-    ) -> Self {
-        let exact = ExactScene::new(scene, settings, effects.set.has(Effect::Ellipsoids));
-        let (near, eye) = (scene.window.near, settings.view.eye.length());
-        let (scene, settings) = in_range(scene, settings);
-        let camera = Camera::new(&scene, &settings);
-        let eye = eye * (scene.window.near / near);
-        Self {
-            world: World::new(&scene, &settings, effects, &camera, accel(&scene, &camera), exact, eye),
-            camera,
-            quantize: settings.quantize,
-        }
+    pub fn with_lists(viewed: &ViewedScene, effects: &Effects, accel: Acceleration) -> Self {
+        let (world, camera) = (World::new(viewed, effects, accel), Camera::new(viewed));
+        Self { world, camera, quantize: viewed.settings().quantize }
     }
 
     /// The ray of the sample in sample column `i` and sample row `j`.

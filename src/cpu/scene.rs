@@ -11,8 +11,9 @@ use crate::camera::Camera;
 use crate::effects::{Effect, EffectSet, Effects};
 use crate::exact::ExactScene;
 use crate::geometry::{Ellipsoid, ellipsoids, shape_indices};
-use crate::scene::{Light, Scene, Sphere};
-use crate::settings::{Settings, Specular};
+use crate::scene::{Light, Sphere};
+use crate::settings::Specular;
+use crate::viewed::ViewedScene;
 
 /// One sphere: what the intersection reads.
 #[derive(Debug, Clone, Copy)]
@@ -96,15 +97,8 @@ pub(crate) struct World<T> {
 }
 
 impl<T: Real> World<T> {
-    pub(crate) fn new(
-        scene: &Scene,
-        settings: &Settings,
-        effects: &Effects,
-        camera: &Camera,
-        accel: Acceleration,
-        exact: ExactScene,
-        eye: f64,
-    ) -> Self {
+    pub(crate) fn new(viewed: &ViewedScene, effects: &Effects, accel: Acceleration) -> Self {
+        let (scene, settings) = (viewed.scene(), viewed.settings());
         let on = |effect| effects.set.has(effect);
         let lit = on(Effect::Diffuse) || on(Effect::Specular);
         let ellipsoids = ellipsoids(scene, on(Effect::Ellipsoids));
@@ -128,7 +122,7 @@ impl<T: Real> World<T> {
             lights: scene.lights.iter().filter(|_| lit).map(PointLight::new).collect(),
             ambient: Vec3::from_f64(scene.ambient),
             background: Vec3::from_f64(scene.background),
-            primary: if on(Effect::Shells) { range(camera.t_min(), true) } else { range(0.0, false) },
+            primary: if on(Effect::Shells) { range(Camera::new(viewed).t_min(), true) } else { range(0.0, false) },
             shadow_t_min: T::from_f64(settings.secondary.shadow),
             reflection: range(settings.secondary.reflection, true),
             refraction: range(0.0, true),
@@ -137,8 +131,8 @@ impl<T: Real> World<T> {
             specular: settings.specular,
             max_depth: effects.depth,
             accel,
-            tangents: Tangents::of(ellipsoids.par_iter().copied(), eye, camera, T::ROUNDING.tests),
-            exact,
+            tangents: Tangents::of(ellipsoids.par_iter().copied(), viewed, T::ROUNDING.tests),
+            exact: ExactScene::new(viewed, on(Effect::Ellipsoids)),
         }
     }
 }

@@ -8,9 +8,9 @@ use super::intersect::Approach;
 use super::real::Real;
 use super::scene::Shape;
 use super::shade::max;
-use crate::camera::Camera;
 use crate::exact::TangentMargin;
 use crate::geometry::Ellipsoid;
+use crate::viewed::ViewedScene;
 
 /// How far rounding can move discriminants of primary rays.
 #[derive(Debug, Clone, Copy, Default)]
@@ -21,15 +21,15 @@ pub(crate) struct Tangents {
 }
 
 impl Tangents {
-    /// Of the `ellipsoids` around an eye that was at `eye`, seen through `camera` with a scalar of this unit roundoff.
-    pub(crate) fn of(
-        ellipsoids: impl ParallelIterator<Item = Ellipsoid>,
-        eye: f64,
-        camera: &Camera,
-        unit: f64,
-    ) -> Self {
-        let margin = TangentMargin::new(eye, camera, unit);
+    /// Of the `ellipsoids` of `viewed`, with a scalar of this unit roundoff.
+    pub(crate) fn of(ellipsoids: impl ParallelIterator<Item = Ellipsoid>, viewed: &ViewedScene, unit: f64) -> Self {
+        let margin = TangentMargin::new(viewed, unit);
         Self { margin, widest: margin.widest(ellipsoids) }
+    }
+
+    /// Of one ellipsoid.
+    pub(crate) fn of_one(margin: TangentMargin, ellipsoid: Ellipsoid) -> Self {
+        Self { margin, widest: margin.greatest(ellipsoid) }
     }
 
     /// The approach with a discriminant whose sign is right: `touches` says which it is where rounding could have decided.

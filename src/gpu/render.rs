@@ -17,10 +17,9 @@ use rayon::prelude::*;
 
 use crate::accel::{Acceleration, Cover, Density, Rounding};
 use crate::brightness::Scalar;
-use crate::camera::Camera;
 use crate::effects::{Effect, Effects};
 use crate::exact::TangentMargin;
-use crate::geometry::{ellipsoid, in_range, shape_indices};
+use crate::geometry::{ellipsoid, shape_indices};
 use crate::gpu::device::error::Error;
 use crate::gpu::device::timestamps::Timestamps;
 use crate::gpu::facade::Gpu;
@@ -34,10 +33,9 @@ use crate::gpu::table::pack::{Packed, list_contents};
 use crate::limits;
 use crate::misuse::check_picture;
 use crate::precision::Tier;
-use crate::scene::Scene;
-use crate::settings::Settings;
 use crate::tiles::TILE;
 use crate::tuning::Class;
+use crate::viewed::ViewedScene;
 pub use output::{Output, Pixels, Rows};
 use place::{Statuses, dispatch_bits};
 pub use rendered::Rendered;
@@ -137,72 +135,65 @@ struct Inputs {
 }
 
 impl<'a> GpuRenderer<'a> {
-    /// Prepares rows of `scene` for `gpu`; the kernels are compiled when the first tile needs them.
-    pub fn new(gpu: &'a Gpu, scene: &Scene, settings: &Settings, effects: &Effects, tier: Tier) -> Result<Self, Error> {
-        Self::with(gpu, scene, settings, effects, tier, &Options::default())
+    /// Prepares rows of `viewed` for `gpu`; the kernels are compiled when the first tile needs them.
+    pub fn new(gpu: &'a Gpu, viewed: &ViewedScene, effects: &Effects, tier: Tier) -> Result<Self, Error> {
+        Self::with(gpu, viewed, effects, tier, &Options::default())
     }
 
     /// Likewise with a kernel of one's choice, and lists of spheres for one that rounds like this.
     pub fn with_rounding(
         gpu: &'a Gpu,
-        scene: &Scene,
-        settings: &Settings,
+        viewed: &ViewedScene,
         effects: &Effects,
         kernel: Kernel,
         rounding: Rounding,
     ) -> Result<Self, Error> {
         let kernel = (kernel, rounding);
         let options = Options::default();
-        Ok(gpu.device.guarded(|| Self::prepared(gpu, scene, settings, effects, kernel, &options, drop))?.0)
+        Ok(gpu.device.guarded(|| Self::prepared(gpu, viewed, effects, kernel, &options, drop))?.0)
     }
 }
 
 impl<'a, O: Output> GpuRenderer<'a, O> {
-    /// Prepares `scene` for `gpu`, with more than the pixels where that is wanted.
+    /// Prepares `viewed` for `gpu`, with more than the pixels where that is wanted.
     pub fn with(
         gpu: &'a Gpu,
-        scene: &Scene,
-        settings: &Settings,
+        viewed: &ViewedScene,
         effects: &Effects,
         tier: Tier,
         options: &Options,
     ) -> Result<Self, Error> {
         let kernel = gpu.kernel(tier)?;
         let kernel = (kernel, kernel.rounding());
-        Ok(gpu.device.guarded(|| Self::prepared(gpu, scene, settings, effects, kernel, options, drop))?.0)
+        Ok(gpu.device.guarded(|| Self::prepared(gpu, viewed, effects, kernel, options, drop))?.0)
     }
 
     /// Likewise; with the lists of spheres, for another renderer of the same scene that rounds no more than `tier`.
     pub fn with_lists(
         gpu: &'a Gpu,
-        scene: &Scene,
-        settings: &Settings,
+        viewed: &ViewedScene,
         effects: &Effects,
         tier: Tier,
         options: &Options,
     ) -> Result<(Self, Acceleration), Error> {
         let kernel = gpu.kernel(tier)?;
         let kernel = (kernel, kernel.rounding());
-        gpu.device.guarded(|| Self::prepared(gpu, scene, settings, effects, kernel, options, |accel| accel))
+        gpu.device.guarded(|| Self::prepared(gpu, viewed, effects, kernel, options, |accel| accel))
     }
 
     /// `keep` says what of the lists outlives their upload.
     fn prepared<K>(
         gpu: &'a Gpu,
-        scene: &Scene,
-        settings: &Settings,
+        viewed: &ViewedScene,
         effects: &Effects,
         (kernel, rounding): (Kernel, Rounding),
         options: &Options,
         keep: impl FnOnce(Acceleration) -> K,
     ) -> Result<(Self, K), Error> {
-        check_picture(scene, settings)?;
-        let (near, eye) = (scene.window.near, settings.view.eye.length());
-        let (scene, settings) = in_range(scene, settings);
-        let (scene, settings) = (scene.as_ref(), &settings);
-        let eye = eye * (scene.window.near / near);
+        check_picture(viewed)?;
+        let (scene, settings) = (viewed.scene(), viewed.settings());
         let scalar = if kernel.is_double() { Scalar::Double } else { Scalar::Single };
-        if let Some(why) = limits::problem_in(scalar, scene, effects) {
+        if let Some(why) = limits::problem_in(scalar, viewed, effects) {
             return Err(Error::OutOfRange { kernel: kernel.name(), why });
         }
         let (tuning, tables) = (&gpu.tuned().tuning, gpu.tables());
@@ -210,10 +201,9 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
             slots: O::SLOTS,
             count_rays: options.count_rays,
             dispatch_tiles: dispatch_tiles(gpu.device.info.max_uniform),
-            ..Specialisation::new(scene, settings, effects, kernel, tuning, tables)
+            ..Specialisation::new(viewed, effects, kernel, tuning, tables)
         };
-        let camera = Camera::new(scene, settings);
-        let lists = |density| Acceleration::with_density(scene, &camera, specialisation.effects, rounding, density);
+        let lists = |density| Acceleration::with_density(viewed, specialisation.effects, rounding, density);
         let mut accel = lists(&tuning.density);
         // Finer lists than are needed must not keep a scene from fitting.
         if tuning.density != Density::LEAST && are_too_large(&gpu.device, tables, &list_contents(&accel)) {
@@ -225,12 +215,12 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         let indices = leaves_surfaces.then(|| shape_indices(&scene.spheres, true_axes)).flatten();
         let tangent_margin = if kernel.tells_tangents() {
             let ellipsoids = scene.spheres.par_iter().map(|sphere| ellipsoid(sphere, true_axes));
-            TangentMargin::new(eye, &camera, kernel.rounding().tests).widest(ellipsoids)
+            TangentMargin::new(viewed, kernel.rounding().tests).widest(ellipsoids)
         } else {
             0.0
         };
         specialisation.shared_surfaces = indices.is_some();
-        let packed = Packed::new(scene, settings, effects, kernel, &accel, indices, tangent_margin);
+        let packed = Packed::new(viewed, effects, kernel, &accel, indices, tangent_margin);
         if specialisation.variant().copies() && !copies_fit(&gpu.device, tables, &packed, &accel) {
             specialisation.walk = Walk::AtOnce;
         }

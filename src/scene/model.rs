@@ -63,6 +63,14 @@ pub struct Window {
     pub top: f64,
 }
 
+impl Window {
+    /// The greatest coordinate of a point on it.
+    pub(crate) fn greatest(&self) -> f64 {
+        let Self { near, left, right, bottom, top } = *self;
+        [left, right, bottom, top].iter().fold(near, |greatest, edge| greatest.max(edge.abs()))
+    }
+}
+
 impl Default for Window {
     fn default() -> Self {
         Self { near: 1.0, left: -1.0, right: 1.0, bottom: -1.0, top: 1.0 }

@@ -24,27 +24,22 @@ fn scene(statements: &str) -> Result<Scene, Error> {
 
 /// The device's picture and its number of pixels that are not finite.
 fn render(gpu: &Gpu, tier: Tier, scene: &Scene, settings: &Settings) -> Result<(Vec<u8>, u64), Error> {
-    let effects = Effects::of(scene, settings);
-    let mut engine = Engine::new(Backend::Device(gpu, tier), scene, settings, &effects)?;
-    render_picture(&mut engine)
-}
-
-/// The reference's picture.
-fn reference(scene: &Scene, settings: &Settings) -> Result<(Vec<u8>, u64), Error> {
-    let effects = Effects::of(scene, settings);
-    let mut engine = Engine::new(Backend::Reference, scene, settings, &effects)?;
-    render_picture(&mut engine)
+    let viewed = scene.viewed(settings);
+    let effects = Effects::of(&viewed);
+    render_picture(&mut Engine::new(Backend::Device(gpu, tier), viewed, &effects)?)
 }
 
 /// Adds one scene to the metrics: pixels that are not finite, and differences that the reference does not explain.
 fn add(metrics: &mut Metrics, gpu: &Gpu, tier: Tier, scene: &Scene, settings: &Settings) -> Result<Vec<u8>, Error> {
     let (rgb, not_finite) = render(gpu, tier, scene, settings)?;
-    let (expected, _) = reference(scene, settings)?;
+    let viewed = scene.viewed(settings);
+    let effects = Effects::of(&viewed);
+    let (expected, _) = render_picture(&mut Engine::new(Backend::Reference, scene.viewed(settings), &effects)?)?;
     metrics.count += u64::from(SIZE * SIZE);
     metrics.not_finite += not_finite;
     let picture = |rgb: &[u8]| Picture::new(SIZE, SIZE, rgb.to_vec());
     if let (Ok(picture), Ok(expected)) = (picture(&rgb), picture(&expected)) {
-        let reference = Reference::new(scene, settings, &Effects::of(scene, settings));
+        let reference = Reference::new(&viewed, &effects);
         let explanation = Explanation::of(&picture, &expected, &reference, &Judge::of(tier));
         *metrics.differing.get_or_insert(0) += explanation.unexplained;
     }

@@ -9,8 +9,7 @@ use crate::effects::Effects;
 use crate::engine::{Backend, Engine, Options};
 use crate::gpu::{self, Gpu};
 use crate::precision::Tier;
-use crate::scene::Scene;
-use crate::settings::Settings;
+use crate::viewed::ViewedScene;
 
 /// Something that renders the scene and is measured. Nothing but this file knows the list: a kernel that only the study
 /// runs becomes another variant.
@@ -97,20 +96,20 @@ impl<'a> Runner<'a> {
     pub(super) fn new(
         contestant: Contestant,
         gpu: Option<&'a Gpu>,
-        scene: &Scene,
-        settings: &Settings,
+        viewed: ViewedScene,
         effects: &Effects,
     ) -> Result<Self, gpu::Error> {
+        let (width, height) = (viewed.scene().width, viewed.scene().height);
         let renderer = match (contestant, gpu) {
-            (Contestant::CpuSingle, _) => Renderer::Single(Box::new(Reference::new(scene, settings, effects))),
+            (Contestant::CpuSingle, _) => Renderer::Single(Box::new(Reference::new(&viewed, effects))),
             (Contestant::Device(tier), Some(gpu)) => {
                 let options = Options { device_clock: true, ..Options::default() };
                 let backend = Backend::Device(gpu, tier);
-                Renderer::Engine(Box::new(Engine::with(backend, scene, settings, effects, &options)?))
+                Renderer::Engine(Box::new(Engine::with(backend, viewed, effects, &options)?))
             }
-            _ => Renderer::Engine(Box::new(Engine::new(Backend::Reference, scene, settings, effects)?)),
+            _ => Renderer::Engine(Box::new(Engine::new(Backend::Reference, viewed, effects)?)),
         };
-        Ok(Self { renderer, rgb: vec![0; scene.width as usize * scene.height as usize * 3] })
+        Ok(Self { renderer, rgb: vec![0; width as usize * height as usize * 3] })
     }
 
     /// Renders the whole picture once.

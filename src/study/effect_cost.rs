@@ -43,7 +43,7 @@ pub fn effect_cost(
     settings: &Settings,
     runs: usize,
 ) -> Result<EffectCost, gpu::Error> {
-    let auto = Effects::of(scene, settings);
+    let auto = Effects::of(&scene.viewed(settings));
     let mut requests = vec![("auto".to_owned(), Request::Auto), ("all".to_owned(), Request::Exactly(EffectSet::ALL))];
     requests.extend(Effect::ALL.map(|effect| {
         let on = auto.set.has(effect);
@@ -53,8 +53,9 @@ pub fn effect_cost(
     let mut engines = Vec::new();
     let mut pictures = Vec::new();
     for (name, request) in requests {
-        let effects = Effects::requested(scene, settings, &request);
-        let mut engine = Engine::new(backend, scene, settings, &effects)?;
+        let viewed = scene.viewed(settings);
+        let effects = Effects::requested(&viewed, &request);
+        let mut engine = Engine::new(backend, viewed, &effects)?;
         pictures.push(picture_hash(&mut engine)?);
         let compile_ms = engine.times().compile_ms;
         let same_picture = pictures.last() == pictures.first();

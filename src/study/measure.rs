@@ -17,6 +17,7 @@ use crate::precision::Selection;
 use crate::report::{Skipped, Timings};
 use crate::scene::Scene;
 use crate::settings::Settings;
+use crate::viewed::ViewedScene;
 
 /// However little time there is, so many runs are counted, if so many were asked for.
 const LEAST_RUNS: usize = 3;
@@ -51,8 +52,8 @@ pub struct StudyInput<'a> {
     pub scene: &'a Scene,
     /// Conventions, depth and samples.
     pub settings: &'a Settings,
-    /// What is simulated under other settings.
-    pub effects: &'a dyn Fn(&Settings) -> Effects,
+    /// What is simulated of it under other settings.
+    pub effects: &'a dyn Fn(&ViewedScene) -> Effects,
     /// The device; `None` leaves the CPU.
     pub gpu: Option<&'a Gpu>,
     /// The tier that measures what effects cost.
@@ -150,7 +151,8 @@ struct Exact {
 impl Exact {
     fn new(input: &StudyInput, settings: &Settings) -> Result<Self, Error> {
         let scene = input.scene;
-        let reference = Reference::new(scene, settings, &(input.effects)(settings));
+        let viewed = scene.viewed(settings);
+        let reference = Reference::new(&viewed, &(input.effects)(&viewed));
         let linear = linear_colors(&reference, (scene.width, scene.height));
         let rgb = linear.iter().flat_map(|color| settings.quantize.levels(*color)).collect();
         Ok(Self { reference, linear, picture: Picture::new(scene.width, scene.height, rgb)? })
@@ -177,7 +179,8 @@ pub fn watched(input: &StudyInput, plan: &StudyPlan, mut hear: impl FnMut(Event)
     const PARTS: f64 = 5.0;
     let StudyInput { scene, settings, gpu, selection, .. } = *input;
     let base = Settings { ..*settings };
-    let effects = (input.effects)(settings);
+    let viewed = scene.viewed(settings);
+    let effects = (input.effects)(&viewed);
     let mut study = Study {
         scene: input.name.to_owned(),
         width: scene.width,
@@ -194,8 +197,9 @@ pub fn watched(input: &StudyInput, plan: &StudyPlan, mut hear: impl FnMut(Event)
         depth: Series::default(),
         samples: Series::default(),
         partial: PartialSeries::none((scene.width, scene.height)),
-        effect_cost: EffectCost { effects: Effects::of(scene, settings), variants: Vec::new() },
+        effect_cost: EffectCost { effects: Effects::of(&viewed), variants: Vec::new() },
     };
+    drop(viewed);
     let mut contestants = Contestant::ALL.to_vec();
     contestants.retain(|contestant| match contestant.obstacle(gpu) {
         None => true,
@@ -301,13 +305,14 @@ fn warm_up<'a>(
     truth: Option<&Exact>,
 ) -> Result<(Runner<'a>, Point, f64), Error> {
     let StudyInput { scene, gpu, .. } = *input;
-    let effects = (input.effects)(settings);
-    let mut runner = Runner::new(contestant, gpu, scene, settings, &effects)?;
+    let viewed = scene.viewed(settings);
+    let effects = (input.effects)(&viewed);
+    let mut runner = Runner::new(contestant, gpu, viewed, &effects)?;
     let run = runner.run()?;
     let linear = match contestant {
         Contestant::Device(_) => None,
         Contestant::CpuSingle => {
-            let reference = Reference::<f32>::new(scene, settings, &effects);
+            let reference = Reference::<f32>::new(&scene.viewed(settings), &effects);
             Some(linear_colors(&reference, (scene.width, scene.height)))
         }
         Contestant::CpuDouble => Some(exact.linear.clone()),

@@ -107,7 +107,8 @@ impl Runner<'_> {
 pub(super) fn partial_series(input: &StudyInput, plan: &StudyPlan) -> Result<PartialSeries, Error> {
     let StudyInput { scene, settings, gpu, selection, .. } = *input;
     let backend = Backend::of(gpu, selection.tier);
-    let effects = (input.effects)(settings);
+    let viewed = scene.viewed(settings);
+    let effects = (input.effects)(&viewed);
     let size = (scene.width, scene.height);
     let mut series = PartialSeries::none(size);
     let fovea = series.fovea;
@@ -115,7 +116,7 @@ pub(super) fn partial_series(input: &StudyInput, plan: &StudyPlan) -> Result<Par
         return Ok(series);
     }
 
-    let mut full = Engine::new(backend, scene, settings, &effects)?;
+    let mut full = Engine::new(backend, viewed, &effects)?;
     let (truth, _) = render_picture(&mut full)?;
     let mut filler = Filler::fastest(backend)?;
     let foveated = |far| Density { fovea: Some(fovea), far };
@@ -125,7 +126,7 @@ pub(super) fn partial_series(input: &StudyInput, plan: &StudyPlan) -> Result<Par
         let density = if manner == Manner::Sparse { Density::sparse(least) } else { foveated(least) };
         let samples = Samples::new(size, &density).map_err(gpu::Error::from)?;
         for fill in Fill::ALL {
-            let engine = Engine::with(backend, scene, settings, &effects, &Options::default())?;
+            let engine = Engine::with(backend, scene.viewed(settings), &effects, &Options::default())?;
             let mut runner = Runner { engine, samples: samples.clone(), colors: vec![[0; 3]; samples.pixels().len()] };
             // The first run compiles.
             runner.run(&mut filler, fill)?;

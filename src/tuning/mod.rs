@@ -73,7 +73,7 @@ impl Tuning {
             paths: 32,
             in_place_below: 1e4,
             in_turn_from: 1e4,
-            // TODO figures
+            // lavapipe takes 1.45 to 1.75 times as long with storage buffers: 10 to 100,000 spheres, 1920×1080.
             texture_tables: true,
             density: Density::DEFAULT,
             // All of it is set to 0 before the first dispatch, which takes lavapipe some 20 ms for as much more.

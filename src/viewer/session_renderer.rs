@@ -192,9 +192,10 @@ impl<'g> SessionRenderer<'g> {
         let settings = view.settings();
         let asked = view.size(context.scene);
         let size = fitted(asked, context.pixels);
-        let effects = Effects::requested(context.scene, &settings, &view.effects);
+        let viewed = context.scene.viewed(&settings);
+        let effects = Effects::requested(&viewed, &view.effects);
         let ladder = self.gpu.map_or(&Tier::ALL[..], Gpu::ladder);
-        let selection = Selection::of(context.scene, &settings, &effects, view.precision, ladder);
+        let selection = Selection::of(&viewed, &effects, view.precision, ladder);
         if self.canvas.size() != size {
             self.canvas = Canvas::new(size);
         }
@@ -222,7 +223,7 @@ impl<'g> SessionRenderer<'g> {
             step = if worth_it { (step / 4).max(1) } else { 1 };
         }
         passes.extend(coarse.into_iter().rev());
-        let problem = effects.too_deep(context.scene).or_else(|| limits::problem(context.scene, &settings, &effects));
+        let problem = effects.too_deep(context.scene).or_else(|| limits::problem(&viewed, &effects));
         if problem.is_some() {
             // The last picture stays.
             passes.clear();

@@ -67,9 +67,9 @@ fn coverage(mut scene: Scene) -> f64 {
     let settings = Settings::exact();
     // Black bodies in their true shapes.
     let shapes = EffectSet::NONE.with(Effect::Ellipsoids, true);
-    let nothing = Effects::requested(&scene, &settings, &Request::Exactly(shapes));
+    let nothing = Effects::requested(&scene.viewed(&settings), &Request::Exactly(shapes));
     let mut rgb = vec![0; 192 * 108 * 3];
-    Reference::<f64>::new(&scene, &settings, &nothing).rows(0, &mut rgb).unwrap();
+    Reference::<f64>::new(&scene.viewed(&settings), &nothing).rows(0, &mut rgb).unwrap();
     let covered = rgb.chunks_exact(3).filter(|pixel| **pixel == [0, 0, 0]).count();
     covered as f64 / (192 * 108) as f64
 }
@@ -149,8 +149,8 @@ fn measure(gpu: Option<&Gpu>, families: &[&str], seconds: f64) -> Bench {
         gpu,
         settings: &settings,
         resolution: Some((32, 18)),
-        effects: &|scene| Effects::of(scene, &settings),
-        selection: &|scene, effects| Selection::of(scene, &settings, effects, precision::Request(None), &Tier::ALL),
+        effects: &Effects::of,
+        selection: &|viewed, effects| Selection::of(viewed, effects, precision::Request(None), &Tier::ALL),
     };
     let families = families.iter().map(|name| family(name)).collect();
     let plan = BenchPlan { families, max_spheres: 100, runs: 2, seconds, cpu: true };

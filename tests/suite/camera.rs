@@ -17,7 +17,7 @@ use trueray::scene::Scene;
 use trueray::settings::{SampleOffset, Settings};
 use trueray::view::{View, ViewError};
 
-use crate::support::{cpu_picture, gpu, gpu_picture, scene_of};
+use crate::support::{cpu_picture, gpu, gpu_picture, scaled, scene_of};
 
 /// Ellipsoids before each other, mirrors, shadows.
 const WORLD: &str = "SPHERE floor 0 -12 -9 10 10 10 0.4 0.6 0.5 0.3 0.6 0.2 0.2 20\n\
@@ -57,7 +57,7 @@ fn turned(scene: &Scene) -> Scene {
 }
 
 fn reference(scene: &Scene, settings: &Settings) -> Picture {
-    cpu_picture::<f64>(scene, settings, &Effects::of(scene, settings)).0
+    cpu_picture::<f64>(scene, settings, &Effects::of(&scene.viewed(settings))).0
 }
 
 fn differing(a: &Picture, b: &Picture) -> u64 {
@@ -71,7 +71,7 @@ fn the_default_is_the_camera_of_the_file() {
     assert_eq!(View::new(DVec3::ZERO, None, DVec3::Y), Ok(View::FILE));
     // Its rays are exactly (x, y, −near).
     let scene = world();
-    let camera = Camera::new(&scene, &Settings::exact());
+    let camera = Camera::new(&scene.viewed(&Settings::exact()));
     for (i, j) in [(0, 0), (17, 35), (95, 71)] {
         assert_eq!(camera.column(i) + camera.row(j), DVec3::new(camera.x(i), camera.y(j), -1.0));
     }
@@ -95,6 +95,25 @@ fn axes_are_orthonormal() {
         assert!((a.dot(b) - product).abs() < 1e-15);
     }
     assert!(x.cross(y).dot(z) > 0.0);
+}
+
+/// Renderers have the eye at the origin and usual units, and a copy of the scene only where one of them takes it.
+#[test]
+fn a_scene_is_moved_to_its_eye() {
+    let (scene, at_origin) = (world(), Settings::classic());
+    assert!(std::ptr::eq(scene.viewed(&at_origin).scene(), &raw const scene));
+    let eye = DVec3::new(3.0, -2.0, 8.0);
+    let settings = Settings { view: View::new(eye, None, DVec3::Y).unwrap(), ..at_origin };
+    let viewed = scene.viewed(&settings);
+    assert_eq!((viewed.scene(), viewed.settings()), (&moved(&scene, -eye), &at_origin));
+    assert_eq!(viewed.in_file(), (&scene, &settings));
+    assert_eq!((viewed.factor(), viewed.eye_distance()), (1.0, eye.length()));
+    // The greatest coordinate is 12: in the units of kernels 1.5.
+    let tiny = scaled(&scene, 2_f64.powi(-60));
+    let viewed = tiny.viewed(&at_origin);
+    assert_eq!((viewed.scene(), viewed.factor()), (&scaled(&scene, 0.125), 2_f64.powi(57)));
+    assert_eq!(viewed.settings().secondary.reflection, at_origin.secondary.reflection * 2_f64.powi(57));
+    assert_eq!(viewed.settings().secondary.shadow, at_origin.secondary.shadow);
 }
 
 #[test]
@@ -138,9 +157,9 @@ fn every_tier_shows_what_the_reference_does_from_anywhere() {
         for view in views(offset) {
             let scene = moved(&world(), offset);
             let settings = with(view);
-            let auto = Effects::of(&scene, &settings);
-            let all = Effects::requested(&scene, &settings, &Request::Exactly(EffectSet::ALL));
-            let exact = Reference::<f64>::new(&scene, &settings, &auto);
+            let auto = Effects::of(&scene.viewed(&settings));
+            let all = Effects::requested(&scene.viewed(&settings), &Request::Exactly(EffectSet::ALL));
+            let exact = Reference::<f64>::new(&scene.viewed(&settings), &auto);
             let expected = reference(&scene, &settings);
             assert!(differing(&expected, &reference(&world(), &Settings::exact())) > 100, "another picture");
             for tier in Tier::ALL {
@@ -161,7 +180,7 @@ fn every_tier_shows_what_the_reference_does_from_anywhere() {
 fn a_slightly_other_view_is_not_explained() {
     let (settings, other) = (with(views(DVec3::ZERO)[1]), with(views(DVec3::new(0.02, 0.0, 0.0))[1]));
     let scene = world();
-    let exact = Reference::<f64>::new(&scene, &settings, &Effects::of(&scene, &settings));
+    let exact = Reference::<f64>::new(&scene.viewed(&settings), &Effects::of(&scene.viewed(&settings)));
     let (expected, shown) = (reference(&scene, &settings), reference(&scene, &other));
     assert!(Explanation::of(&shown, &expected, &exact, &Judge::of(Tier::Fast)).unexplained > 0);
 }
@@ -221,10 +240,11 @@ proptest! {
         (scene.window.bottom, scene.window.top) = side(window[1], size[1], flip[1]);
         let settings = Settings { sampling, samples_per_side: samples, view, ..Settings::classic() };
         let density = Density { longest_tile, ..Density::DEFAULT };
-        let camera = Camera::new(&scene, &settings);
+        let viewed = scene.viewed(&settings);
+        let camera = Camera::new(&viewed);
 
         for rounding in [Rounding::SINGLE, Rounding::COMPENSATED, Rounding::DOUBLE] {
-            let lists = Acceleration::with_density(&scene, &camera, EffectSet::ALL, rounding, &density).screen;
+            let lists = Acceleration::with_density(&viewed, EffectSet::ALL, rounding, &density).screen;
             for j in 0..height * samples {
                 for i in 0..width * samples {
                     let ray = camera.column(i) + camera.row(j);
@@ -263,8 +283,11 @@ fn tiles_follow_the_outline() {
     (scene.width, scene.height) = (800, 800);
     let count = |scene: &Scene, view| {
         let settings = Settings { view, ..Settings::classic() };
-        let camera = Camera::new(scene, &settings);
-        Acceleration::new(scene, &camera, EffectSet::ALL, Rounding::SINGLE).screen.cover().covered(0, 800).len() as f64
+        Acceleration::new(&scene.viewed(&settings), EffectSet::ALL, Rounding::SINGLE)
+            .screen
+            .cover()
+            .covered(0, 800)
+            .len() as f64
     };
     let outlined = count(&scene, View::FILE);
     // The ellipse covers π/4 of its rectangle, of about 267 × 444 pixels.

@@ -65,7 +65,7 @@ impl View {
     }
 
     fn picture(&self) -> Picture {
-        let effects = Effects::of(&self.scene, &self.settings);
+        let effects = Effects::of(&self.scene.viewed(&self.settings));
         let (picture, not_finite) = cpu_picture::<f64>(&self.scene, &self.settings, &effects);
         assert_eq!(not_finite, 0);
         picture
@@ -73,12 +73,13 @@ impl View {
 
     /// The unclamped colours of these pixels.
     fn colors(&self, pixels: &Pixels) -> Vec<DVec3> {
-        let reference = Reference::<f64>::new(&self.scene, &self.settings, &Effects::of(&self.scene, &self.settings));
+        let reference =
+            Reference::<f64>::new(&self.scene.viewed(&self.settings), &Effects::of(&self.scene.viewed(&self.settings)));
         pixels.iter().map(|&(x, y)| reference.color(x, y).unwrap()).collect()
     }
 
     fn effects(&self) -> EffectSet {
-        Effects::of(&self.scene, &self.settings).set
+        Effects::of(&self.scene.viewed(&self.settings)).set
     }
 
     fn all(&self) -> impl Iterator<Item = (u32, u32)> + use<> {
@@ -320,9 +321,8 @@ mod basic {
         assert_eq!(view.scene.spheres.len(), 17);
         let in_no_cell = |scene: &Scene| {
             let settings = Settings::classic();
-            let camera = trueray::camera::Camera::new(scene, &settings);
             let rounding = trueray::accel::Rounding::DOUBLE;
-            let lists = trueray::accel::Acceleration::new(scene, &camera, EffectSet::ALL, rounding);
+            let lists = trueray::accel::Acceleration::new(&scene.viewed(&settings), EffectSet::ALL, rounding);
             lists.grid.unwrap().large().len()
         };
         assert_eq!(in_no_cell(&view.scene), 0);
@@ -575,13 +575,13 @@ mod effects {
         let view = view("effects/reflections-depth-1");
         let depth = |max_depth| view.set(move |settings| settings.max_depth = max_depth);
         assert!(depth(1).looks_like(&depth(9)) && !depth(0).looks_like(&depth(1)));
-        assert_eq!(Effects::of(&view.scene, &view.settings).depth, 1);
+        assert_eq!(Effects::of(&view.scene.viewed(&view.settings)).depth, 1);
     }
 
     #[test]
     fn reflections_touching() {
         let view = view("effects/reflections-touching");
-        assert_eq!(Effects::of(&view.scene, &view.settings).depth, view.settings.max_depth);
+        assert_eq!(Effects::of(&view.scene.viewed(&view.settings)).depth, view.settings.max_depth);
         let [mirror, ball] = [view.scene.spheres[0], view.scene.spheres[1]];
         assert!((mirror.center.distance(ball.center) - mirror.scale.x - ball.scale.x).abs() < 1e-12);
     }

@@ -40,8 +40,8 @@ fn covered_pictures_differ_from_double_in_one_pixel_of_ten_thousand() {
             if !is_whole && index % 2 != convention {
                 continue;
             }
-            let effects = Effects::of(&scene, settings);
-            let demand = Demand::of(&scene, settings, &effects);
+            let effects = Effects::of(&scene.viewed(settings));
+            let demand = Demand::of(&scene.viewed(settings), &effects);
             let mut expected = None;
             for tier in [Tier::Fast, Tier::Robust] {
                 let why = demand.beyond(tier, &scene);
@@ -65,7 +65,7 @@ fn covered_pictures_differ_from_double_in_one_pixel_of_ten_thousand() {
                 }
                 let (covered, pixels, all) = &mut sums[tier as usize];
                 (*covered, *pixels, *all) = (*covered + 1, *pixels + expected.pixel_count(), *all + differing.over_0);
-                let reference = Reference::new(&scene, settings, &effects);
+                let reference = Reference::new(&scene.viewed(settings), &effects);
                 let judge = Backend::Device(&gpu, tier).judge();
                 let unexplained = Explanation::of(&picture, expected, &reference, &judge).unexplained;
                 if differing.over_0 > limit(expected.pixel_count(), is_whole) || unexplained > 0 || not_finite > 0 {
@@ -89,7 +89,7 @@ fn covered_pictures_differ_from_double_in_one_pixel_of_ten_thousand() {
 fn auto_says_what_takes_it_to_another_tier() {
     let settings = Settings::exact();
     let select = |scene: &trueray::scene::Scene| {
-        Selection::of(scene, &settings, &Effects::of(scene, &settings), Request(None), &Tier::ALL)
+        Selection::of(&scene.viewed(&settings), &Effects::of(&scene.viewed(&settings)), Request(None), &Tier::ALL)
     };
     let kinds = kinds();
     let named = |name: &str| select(&kinds.iter().find(|kind| kind.name == name).unwrap().scene(SEED));

@@ -78,7 +78,7 @@ fn table() -> Vec<(String, Effect, bool, &'static str)> {
 #[test]
 fn effects_follow_from_the_scene() {
     for (text, effect, on, reason) in table() {
-        let effects = Effects::of(&scene_of(&text), &Settings::classic());
+        let effects = Effects::of(&scene_of(&text).viewed(&Settings::classic()));
         let row = effects.rows.iter().find(|row| row.effect == effect).unwrap();
         assert!(row.on == on && row.reason.contains(reason), "{text}{effect}: {row:?}, expected {on}: {reason}");
         assert_eq!(effects.set.has(effect), on);
@@ -92,7 +92,7 @@ fn only_the_depth_that_can_matter_is_followed() {
     let touching = sphere("t", [2.0, 0.0, -5.0], 1.0, "1 0 0 0 1");
     let second = sphere("n", [5.0, 0.0, -5.0], 1.0, "1 0 0 1 1");
     let settings = Settings { max_depth: 7, ..Settings::classic() };
-    let depth = |text: String| Effects::of(&scene_of(&text), &settings).depth;
+    let depth = |text: String| Effects::of(&scene_of(&text).viewed(&settings)).depth;
     assert_eq!(depth(mirror.clone()), 0);
     assert_eq!(depth(mirror.clone() + &plain), 1);
     assert_eq!(depth(mirror.clone() + &touching), 7);
@@ -101,7 +101,7 @@ fn only_the_depth_that_can_matter_is_followed() {
     assert_eq!(depth(glass.clone()), 7);
     assert_eq!(depth(mirror + &glass), 7);
     let flat = Settings { max_depth: 0, ..Settings::classic() };
-    assert!(!Effects::of(&scene_of(&glass), &flat).set.has(Effect::Refraction));
+    assert!(!Effects::of(&scene_of(&glass).viewed(&flat)).set.has(Effect::Refraction));
 }
 
 #[test]
@@ -124,12 +124,12 @@ fn requests_are_read_from_text() {
 fn a_forced_effect_says_so() {
     let scene = scene_of("SPHERE s 0 0 -5 1 1 1 1 1 1 1 0 0 0 1\nAMBIENT 1 1 1");
     let settings = Settings::classic();
-    let forced = Effects::requested(&scene, &settings, &"-ambient,+reflections".parse().unwrap());
+    let forced = Effects::requested(&scene.viewed(&settings), &"-ambient,+reflections".parse().unwrap());
     assert!(!forced.set.has(Effect::Ambient) && forced.set.has(Effect::Reflections));
     assert_eq!(forced.depth, settings.max_depth);
     let row = forced.rows.iter().find(|row| row.effect == Effect::Ambient).unwrap();
     assert!(!row.on && row.reason.starts_with("forced off; the scene: "), "{row:?}");
-    let all = Effects::requested(&scene, &settings, &Request::Exactly(EffectSet::ALL));
+    let all = Effects::requested(&scene.viewed(&settings), &Request::Exactly(EffectSet::ALL));
     assert_eq!((all.set, all.depth), (EffectSet::ALL, settings.max_depth));
 }
 
@@ -168,8 +168,8 @@ proptest! {
         let factor = 2_f64.powi(exponent);
         let scene = scaled(&scene, factor);
         settings.secondary.reflection *= factor;
-        let all = Effects::requested(&scene, &settings, &Request::Exactly(EffectSet::ALL));
-        let auto = Effects::of(&scene, &settings);
+        let all = Effects::requested(&scene.viewed(&settings), &Request::Exactly(EffectSet::ALL));
+        let auto = Effects::of(&scene.viewed(&settings));
         let [with, without] = [&all, &auto].map(|effects| cpu_picture::<f64>(&scene, &settings, effects));
         prop_assert!(with == without, "{}, depth {}", auto.set, auto.depth);
     }

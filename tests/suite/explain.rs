@@ -46,8 +46,8 @@ struct Case<'a> {
 
 impl<'a> Case<'a> {
     fn new(scene: &'a Scene, settings: Settings) -> Self {
-        let effects = Effects::of(scene, &settings);
-        let reference = Reference::new(scene, &settings, &effects);
+        let effects = Effects::of(&scene.viewed(&settings));
+        let reference = Reference::new(&scene.viewed(&settings), &effects);
         let expected = cpu_picture::<f64>(scene, &settings, &effects).0;
         Self { scene, settings, effects, reference, expected }
     }
@@ -63,14 +63,14 @@ impl<'a> Case<'a> {
     /// What `auto` takes on software devices.
     fn tier(&self) -> Tier {
         let ladder = [Tier::Fast, Tier::Double, Tier::Robust];
-        Selection::of(self.scene, &self.settings, &self.effects, precision::Request(None), &ladder).tier
+        Selection::of(&self.scene.viewed(&self.settings), &self.effects, precision::Request(None), &ladder).tier
     }
 
     /// The unclamped colours of the reference in `T`, by the margins of `f32`.
     #[track_caller]
     fn assert_colors_explained<T: Real>(&self, what: &str) {
         let trial = Judge::of(Tier::Fast).trial(&self.reference);
-        let other = Reference::<T>::new(self.scene, &self.settings, &self.effects);
+        let other = Reference::<T>::new(&self.scene.viewed(&self.settings), &self.effects);
         let (width, height) = self.reference.size();
         for [i, j] in (0..height).flat_map(|j| (0..width).map(move |i| [i, j])) {
             let color = other.color(i, j).unwrap();
@@ -109,14 +109,16 @@ fn gross_mistakes(case: &Case) -> Vec<(&'static str, Picture)> {
 
 /// Pictures of the scene as a renderer with a fault shows it. Many of their pixels are off by less than a level.
 fn faulty_renderers(case: &Case) -> Vec<(&'static str, Picture)> {
-    let render =
-        |scene: &Scene, settings: &Settings| cpu_picture::<f64>(scene, settings, &Effects::of(scene, settings)).0;
+    let render = |scene: &Scene, settings: &Settings| {
+        cpu_picture::<f64>(scene, settings, &Effects::of(&scene.viewed(settings))).0
+    };
     let changed = |change: fn(&mut Scene)| {
         let mut scene = case.scene.clone();
         change(&mut scene);
         render(&scene, &case.settings)
     };
-    let unshadowed = Effects::requested(case.scene, &case.settings, &Request::Changed(vec![(Effect::Shadows, false)]));
+    let unshadowed =
+        Effects::requested(&case.scene.viewed(&case.settings), &Request::Changed(vec![(Effect::Shadows, false)]));
     vec![
         ("depth 1", render(case.scene, &Settings { max_depth: 1, ..case.settings })),
         ("Kr a third more", changed(|scene| scene.spheres.iter_mut().for_each(|s| s.kr *= 4.0 / 3.0))),

@@ -17,7 +17,7 @@ const LAMP: &str = "LIGHT lamp 3 4 5 1 0.5 0.25\nLIGHT dark 1 1 1 0 0 0\n";
 const MIRRORS: &str = "SPHERE a -2 0 -6 1 1 1 1 1 1 0 0 0 0.5 1\nSPHERE b 2 0 -6 1 1 1 1 1 1 0 0 0 0.5 1\n";
 
 fn written(scene: &Scene, settings: &Settings, peer: Peer) -> Result<Export, Vec<Obstacle>> {
-    export(scene, settings, &Effects::of(scene, settings), peer)
+    export(scene, settings, &Effects::of(&scene.viewed(settings)), peer)
 }
 
 /// The file with the settings that the peer's own habits want.
@@ -304,7 +304,7 @@ fn installed_renderers_show_our_picture() {
             let scene = scene(&root().join("scenes").join(name).with_extension("txt"));
             let settings = Settings { quantize, ..Settings::classic() };
             let Some(theirs) = picture_of(peer, &scene, &settings, folder.path(), test) else { break };
-            let (ours, _) = cpu_picture::<f64>(&scene, &settings, &Effects::of(&scene, &settings));
+            let (ours, _) = cpu_picture::<f64>(&scene, &settings, &Effects::of(&scene.viewed(&settings)));
             let differing = Difference::between(&ours, &theirs).unwrap().differing;
             // Each rounds on its own: a level here and there.
             assert!(differing.over_0 <= 3 && differing.over_1 == 0, "{peer}, {name}: {differing:?}");

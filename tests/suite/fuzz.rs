@@ -186,12 +186,12 @@ fn hostile_scenes() {
         let parsed = parse("fuzz", text.as_bytes());
         let Some(scene) = parsed.scene else { return Ok(()) };
         let _ = doubts(&scene, &settings, None);
-        let effects = Effects::of(&scene, &settings);
-        if limits::problem(&scene, &settings, &effects).is_some() {
+        let effects = Effects::of(&scene.viewed(&settings));
+        if limits::problem(&scene.viewed(&settings), &effects).is_some() {
             return Ok(());
         }
-        let _ = Selection::of(&scene, &settings, &effects, Request::default(), &Tier::ALL);
-        if let Ok(mut engine) = Engine::new(Backend::Reference, &scene, &settings, &effects) {
+        let _ = Selection::of(&scene.viewed(&settings), &effects, Request::default(), &Tier::ALL);
+        if let Ok(mut engine) = Engine::new(Backend::Reference, scene.viewed(&settings), &effects) {
             let (rgb, _) = render_picture(&mut engine).map_err(|error| TestCaseError::fail(error.to_string()))?;
             prop_assert_eq!(rgb.len(), 60);
             rendered.set(rendered.get() + 1);

@@ -145,7 +145,7 @@ fn check(test: &str) {
 
 fn check_subject(test: &str, subject: &Subject) {
     let Subject { name, scene, settings } = subject;
-    let effects = Effects::of(scene, settings);
+    let effects = Effects::of(&scene.viewed(settings));
     let (reference, not_finite) = cpu_picture::<f64>(scene, settings, &effects);
     assert_eq!(not_finite, 0, "{name}");
     let is_blessed = is_blessed(name);
@@ -179,7 +179,7 @@ fn check_subject(test: &str, subject: &Subject) {
             continue;
         }
         let explanation = {
-            let reference = Reference::new(scene, settings, &effects);
+            let reference = Reference::new(&scene.viewed(settings), &effects);
             Explanation::of(picture, &expected, &reference, &Backend::Device(&gpu, *tier).judge())
         };
         let file = beside_each_other(&format!("{name}-{tier}"), &expected, picture);

@@ -37,7 +37,7 @@ fn reference_matches_every_key_bit_for_bit() {
     let Some(keys) = keys("reference_matches_every_key_bit_for_bit") else { return };
     let settings = Settings::classic();
     for (subject, scene, key) in keys {
-        let effects = Effects::of(&scene, &settings);
+        let effects = Effects::of(&scene.viewed(&settings));
         let (picture, _) = cpu_picture::<f64>(&scene, &settings, &effects);
         let difference = Difference::between(&picture, &key).unwrap();
         // The official Illum picture itself is off by one level in 3 pixels.
@@ -53,14 +53,14 @@ fn gpu_matches_every_key_within_f32() {
     let (Some(keys), Some(gpu)) = (keys(test), gpu(test)) else { return };
     let settings = Settings::classic();
     for (subject, scene, key) in keys {
-        let effects = Effects::of(&scene, &settings);
+        let effects = Effects::of(&scene.viewed(&settings));
         let (picture, not_finite) = gpu_picture(&gpu, Tier::Fast, &scene, &settings, &effects);
         let difference = Difference::between(&picture, &key).unwrap();
         let report = difference.report("GPU", "key");
         assert!(difference.differing.over_0 <= 40 && difference.differing.over_1 <= 8, "{subject}:\n{report}");
         assert_eq!(not_finite, 0, "{subject}");
 
-        let reference = Reference::new(&scene, &settings, &effects);
+        let reference = Reference::new(&scene.viewed(&settings), &effects);
         let (expected, _) = cpu_picture::<f64>(&scene, &settings, &effects);
         let explanation = Explanation::of(&picture, &expected, &reference, &Judge::of(Tier::Fast));
         assert_eq!(explanation.unexplained, 0, "{subject}:\n{}", explanation.report());
@@ -76,7 +76,7 @@ fn gpu_at_double_matches_every_key_bit_for_bit() {
     }
     let settings = Settings::classic();
     for (subject, scene, key) in keys {
-        let effects = Effects::of(&scene, &settings);
+        let effects = Effects::of(&scene.viewed(&settings));
         let (picture, _) = gpu_picture(&gpu, Tier::Double, &scene, &settings, &effects);
         let difference = Difference::between(&picture, &key).unwrap();
         // As for the reference.
@@ -92,11 +92,11 @@ fn keys_with_254_for_255_are_unexplained() {
     let Some(keys) = keys("keys_with_254_for_255_are_unexplained") else { return };
     let settings = Settings::classic();
     for (subject, scene, _) in keys {
-        let effects = Effects::of(&scene, &settings);
+        let effects = Effects::of(&scene.viewed(&settings));
         let (expected, _) = cpu_picture::<f64>(&scene, &settings, &effects);
         let rgb = expected.rgb().iter().map(|&level| level.min(254)).collect();
         let wrong = Picture::new(scene.width, scene.height, rgb).unwrap();
-        let reference = Reference::new(&scene, &settings, &effects);
+        let reference = Reference::new(&scene.viewed(&settings), &effects);
         for tier in Tier::ALL {
             let explanation = Explanation::of(&wrong, &expected, &reference, &Judge::of(tier));
             let explained = explanation.differing - explanation.unexplained;

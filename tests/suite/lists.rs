@@ -110,15 +110,15 @@ fn settings_of(seed: u64) -> Settings {
 
 fn cpu(scene: &Scene, settings: &Settings, rounding: Rounding) -> Vec<u8> {
     let mut rgb = vec![0; scene.width as usize * scene.height as usize * 3];
-    let effects = Effects::of(scene, settings);
-    Reference::<f64>::with_rounding(scene, settings, &effects, rounding).rows(0, &mut rgb).unwrap();
+    let effects = Effects::of(&scene.viewed(settings));
+    Reference::<f64>::with_rounding(&scene.viewed(settings), &effects, rounding).rows(0, &mut rgb).unwrap();
     rgb
 }
 
 fn device(gpu: &Gpu, kernel: Kernel, scene: &Scene, settings: &Settings, rounding: Rounding) -> Vec<u8> {
     let mut rgb = vec![0; scene.width as usize * scene.height as usize * 3];
-    let effects = Effects::of(scene, settings);
-    let renderer = GpuRenderer::with_rounding(gpu, scene, settings, &effects, kernel, rounding);
+    let effects = Effects::of(&scene.viewed(settings));
+    let renderer = GpuRenderer::with_rounding(gpu, &scene.viewed(settings), &effects, kernel, rounding);
     assert!(renderer.unwrap().rows(0, &mut rgb).unwrap().cut.is_empty());
     rgb
 }
@@ -192,10 +192,10 @@ fn assert_whole_or_refused(gpu: &Gpu, scene: &Scene) {
     let settings = Settings::classic();
     let expected = cpu(scene, &settings, Rounding::DOUBLE);
     for kernel in Tier::ALL.into_iter().filter_map(|tier| gpu.kernel(tier).ok()) {
-        let effects = Effects::of(scene, &settings);
+        let effects = Effects::of(&scene.viewed(&settings));
         let mut rgb = vec![0; scene.width as usize * scene.height as usize * 3];
         let mut renderer =
-            GpuRenderer::with_rounding(gpu, scene, &settings, &effects, kernel, kernel.rounding()).unwrap();
+            GpuRenderer::with_rounding(gpu, &scene.viewed(&settings), &effects, kernel, kernel.rounding()).unwrap();
         match renderer.rows(0, &mut rgb) {
             Ok(rendered) => {
                 let mut whole = rgb;
@@ -209,8 +209,9 @@ fn assert_whole_or_refused(gpu: &Gpu, scene: &Scene) {
         }
     }
     let engine = |verify| {
-        let (backend, effects) = (Backend::Device(gpu, Tier::Fast), Effects::of(scene, &settings));
-        let mut engine = Engine::verified(backend, scene, &settings, &effects, &Options::default(), verify).unwrap();
+        let (backend, effects) = (Backend::Device(gpu, Tier::Fast), Effects::of(&scene.viewed(&settings)));
+        let mut engine =
+            Engine::verified(backend, scene.viewed(&settings), &effects, &Options::default(), verify).unwrap();
         render_picture(&mut engine).map(|picture| (picture.0, engine.cut()))
     };
     let (whole, cut) = engine("1".parse().unwrap()).unwrap();

@@ -26,8 +26,8 @@ fn kernels(gpu: &Gpu) -> Vec<Kernel> {
 /// The reference's picture, with lists for a renderer that rounds like this.
 fn cpu(scene: &Scene, settings: &Settings, rounding: Rounding) -> Vec<u8> {
     let mut rgb = vec![0; scene.width as usize * scene.height as usize * 3];
-    let effects = Effects::of(scene, settings);
-    let tally = Reference::<f64>::with_rounding(scene, settings, &effects, rounding).rows(0, &mut rgb);
+    let effects = Effects::of(&scene.viewed(settings));
+    let tally = Reference::<f64>::with_rounding(&scene.viewed(settings), &effects, rounding).rows(0, &mut rgb);
     assert_eq!(tally.unwrap().not_finite, 0);
     rgb
 }
@@ -35,12 +35,17 @@ fn cpu(scene: &Scene, settings: &Settings, rounding: Rounding) -> Vec<u8> {
 /// The device's picture; none where it refuses the scene or has not as many turns of a loop.
 fn device(gpu: &Gpu, kernel: Kernel, scene: &Scene, settings: &Settings, rounding: Rounding) -> Option<Vec<u8>> {
     let mut rgb = vec![0; scene.width as usize * scene.height as usize * 3];
-    let effects = Effects::of(scene, settings);
-    let mut renderer = GpuRenderer::with_rounding(gpu, scene, settings, &effects, kernel, rounding).ok()?;
+    let effects = Effects::of(&scene.viewed(settings));
+    let mut renderer = GpuRenderer::with_rounding(gpu, &scene.viewed(settings), &effects, kernel, rounding).ok()?;
     match renderer.rows(0, &mut rgb) {
         Ok(rendered) if !rendered.cut.is_empty() => return None,
         Ok(rendered) => {
-            assert_eq!(rendered.not_finite, 0, "{kernel:?}: {:?}", precision::Demand::of(scene, settings, &effects));
+            assert_eq!(
+                rendered.not_finite,
+                0,
+                "{kernel:?}: {:?}",
+                precision::Demand::of(&scene.viewed(settings), &effects)
+            );
         }
         Err(error) => panic!("{error}"),
     }
@@ -167,7 +172,7 @@ fn lists_hold_at_every_magnitude() {
     let mut rendered = 0;
     for seed in 0..768 {
         let (scene, settings) = odd_scene(seed);
-        if limits::problem(&scene, &settings, &Effects::of(&scene, &settings)).is_some() {
+        if limits::problem(&scene.viewed(&settings), &Effects::of(&scene.viewed(&settings))).is_some() {
             continue;
         }
         rendered += 1;
@@ -177,13 +182,13 @@ fn lists_hold_at_every_magnitude() {
         let background = cpu_picture::<f64>(
             &Scene { spheres: Vec::new(), ..scene.clone() },
             &settings,
-            &Effects::of(&Scene { spheres: Vec::new(), ..scene.clone() }, &settings),
+            &Effects::of(&Scene { spheres: Vec::new(), ..scene.clone() }.viewed(&settings)),
         );
         let empty = background.0.rgb()[..3].to_vec();
         let has_glass = scene.spheres.iter().any(|sphere| sphere.kt != 0.0);
         for (index, pixel) in lists.chunks(3).enumerate().step_by(if has_glass { 7 } else { 3 }) {
             let [x, y] = [index as u32 % scene.width, index as u32 / scene.width];
-            let hit = picked(&scene, &settings, x, y);
+            let hit = picked(&scene.viewed(&settings), x, y);
             assert!(hit.is_some() || pixel == empty, "scene {seed}, pixel {x} {y}");
             assert!(hit.is_none() || pixel != empty, "scene {seed}, pixel {x} {y}: {hit:?}");
         }
@@ -198,7 +203,7 @@ fn lists_hold_at_every_magnitude_and_tier() {
         let mut rendered = 0;
         for seed in (1..768).step_by(11) {
             let (scene, settings) = odd_scene(seed);
-            if limits::problem(&scene, &settings, &Effects::of(&scene, &settings)).is_some() {
+            if limits::problem(&scene.viewed(&settings), &Effects::of(&scene.viewed(&settings))).is_some() {
                 continue;
             }
             let lists = device(&gpu, kernel, &scene, &settings, kernel.rounding());
@@ -209,7 +214,8 @@ fn lists_hold_at_every_magnitude_and_tier() {
             assert_eq!(differing(&lists, &all), 0, "{kernel:?}, scene {seed}");
             if kernel == Kernel::Tier(Tier::Double) {
                 // With what exact arithmetic decides.
-                let (double, _) = gpu_picture(&gpu, Tier::Double, &scene, &settings, &Effects::of(&scene, &settings));
+                let (double, _) =
+                    gpu_picture(&gpu, Tier::Double, &scene, &settings, &Effects::of(&scene.viewed(&settings)));
                 let expected = cpu(&scene, &settings, Rounding::DOUBLE);
                 assert_eq!(differing(double.rgb(), &expected), 0, "scene {seed}");
             }
@@ -237,7 +243,7 @@ fn shadows_of_a_far_light_do_not_depend_on_its_distance() {
         let settings = Settings { max_depth: 2, ..Settings::exact() };
         let expected = cpu(&at(1e7), &settings, Rounding::UNKNOWN);
         let unlit = {
-            let none = Effects::requested(&near, &settings, &"-shadows".parse().unwrap());
+            let none = Effects::requested(&near.viewed(&settings), &"-shadows".parse().unwrap());
             cpu_picture::<f64>(&at(1e7), &settings, &none).0
         };
         if differing(&expected, unlit.rgb()) <= 5 {
@@ -246,12 +252,12 @@ fn shadows_of_a_far_light_do_not_depend_on_its_distance() {
         with_shadows += 1;
         for exponent in (8..24).chain([60, 100, 150, 200, 300]) {
             let scene = at(10_f64.powi(exponent));
-            let effects = Effects::of(&scene, &settings);
+            let effects = Effects::of(&scene.viewed(&settings));
             // A thousandth of a pixel's width from a shadow's edge, at 10⁸, is seen by none or one of the pixels.
             let difference = differing(&cpu(&scene, &settings, Rounding::DOUBLE), &expected);
             assert!(difference <= 1, "scene {seed}, 1e{exponent}: {difference}");
             let Some(gpu) = &shared else { continue };
-            let demand = precision::Demand::of(&scene, &settings, &effects);
+            let demand = precision::Demand::of(&scene.viewed(&settings), &effects);
             for kernel in kernels(gpu) {
                 let Kernel::Tier(tier) = kernel else { continue };
                 if demand.reach.value > tier.promise().reach {
@@ -285,13 +291,13 @@ fn no_picture_depends_on_its_units() {
         (scene.width, scene.height) = (40, 30);
         for base in [Settings::classic(), Settings::exact()] {
             let expected = cpu(&scene, &base, Rounding::DOUBLE);
-            let exact = ExactScene::new(&scene, &base, true);
+            let exact = ExactScene::new(&scene.viewed(&base), true);
             for exponent in [-900, -480, -100, -30, 30, 100, 480, 900] {
                 let factor = 2_f64.powi(exponent);
                 let Secondary { shadow, reflection } = base.secondary;
                 let settings = Settings { secondary: Secondary { shadow, reflection: reflection * factor }, ..base };
                 let scene = scaled(&scene, factor);
-                assert_eq!(limits::problem(&scene, &settings, &Effects::of(&scene, &settings)), None);
+                assert_eq!(limits::problem(&scene.viewed(&settings), &Effects::of(&scene.viewed(&settings))), None);
                 let actual = cpu(&scene, &settings, Rounding::DOUBLE);
                 for (index, _) in actual.chunks(3).zip(expected.chunks(3)).enumerate().filter(|(_, (a, b))| a != b) {
                     let pixel = [index as u32 % scene.width, index as u32 / scene.width];
@@ -324,7 +330,7 @@ fn no_picture_depends_on_the_size_of_its_window() {
             for (&kernel, picture) in kernels.iter().zip(&pictures) {
                 assert_eq!(differing(&on_device(kernel, &small), picture), 0, "{kernel:?}, 2^{exponent}");
             }
-            let [seen, small] = [&scene, &small].map(|scene| picked(scene, &settings, 16, 12));
+            let [seen, small] = [&scene, &small].map(|scene| picked(&scene.viewed(&settings), 16, 12));
             if let (Some(seen), Some(small)) = (seen, small) {
                 assert_eq!((seen.sphere, seen.position), (small.sphere, small.position));
                 assert_eq!(seen.t, small.t * 2_f64.powi(exponent));
@@ -361,14 +367,14 @@ fn negative_mirrors_alternate_between_white_and_black() {
         for bounces in 0..10_i32 {
             let max_depth = bounces.unsigned_abs();
             let settings = Settings { max_depth, ..Settings::exact() };
-            let effects = Effects::of(&scene, &settings);
+            let effects = Effects::of(&scene.viewed(&settings));
             let sum: f64 = (0..=bounces).map(|bounce| kr.powi(bounce)).sum();
             let level = (255.0 * (0.5 * sum).clamp(0.0, 1.0) + 0.5) as u8;
             let (expected, not_finite) = cpu_picture::<f64>(&scene, &settings, &effects);
             assert_eq!(not_finite, 0);
             assert!(expected.rgb().iter().all(|&l| l == level), "{kr}, depth {max_depth}: {level}");
             let Some(gpu) = &shared else { continue };
-            let selection = Selection::of(&scene, &settings, &effects, precision::Request(None), gpu.ladder());
+            let selection = Selection::of(&scene.viewed(&settings), &effects, precision::Request(None), gpu.ladder());
             let kernel = gpu.kernel(selection.tier).unwrap();
             let picture = device(gpu, kernel, &scene, &settings, kernel.rounding()).unwrap();
             assert!(picture == expected.rgb(), "{kr}, depth {max_depth}, {}", selection.tier);
@@ -408,16 +414,17 @@ fn colours_beyond_single_precision_take_double() {
     for (text, source) in cases {
         let scene = scene_of(&text);
         let settings = Settings::classic();
-        let effects = Effects::of(&scene, &settings);
-        assert_eq!(limits::problem(&scene, &settings, &effects), None);
+        let effects = Effects::of(&scene.viewed(&settings));
+        assert_eq!(limits::problem(&scene.viewed(&settings), &effects), None);
         let (expected, not_finite) = cpu_picture::<f64>(&scene, &settings, &effects);
         assert_eq!(not_finite, 0);
-        let selection = Selection::of(&scene, &settings, &effects, precision::Request(None), &Tier::ALL);
+        let selection = Selection::of(&scene.viewed(&settings), &effects, precision::Request(None), &Tier::ALL);
         assert_eq!((selection.tier, selection.covered), (Tier::Double, true), "{text}");
         assert!(selection.reason.contains("brightness"), "{}", selection.reason);
         let Some(gpu) = &shared else { continue };
         for kernel in kernels(gpu) {
-            let renderer = GpuRenderer::with_rounding(gpu, &scene, &settings, &effects, kernel, kernel.rounding());
+            let renderer =
+                GpuRenderer::with_rounding(gpu, &scene.viewed(&settings), &effects, kernel, kernel.rounding());
             if kernel == Kernel::Tier(Tier::Double) {
                 let picture = device(gpu, kernel, &scene, &settings, kernel.rounding()).unwrap();
                 assert_eq!(differing(&picture, expected.rgb()), 0, "{text}");
@@ -445,21 +452,24 @@ fn what_f64_cannot_hold_is_refused() {
     for (text, reason) in cases {
         let scene = scene_of(&text);
         let settings = Settings::classic();
-        let why = limits::problem(&scene, &settings, &Effects::of(&scene, &settings)).unwrap_or_default();
+        let why = limits::problem(&scene.viewed(&settings), &Effects::of(&scene.viewed(&settings))).unwrap_or_default();
         assert!(why.contains(reason), "{text}: {why}");
     }
     let scene = scene_of(ball);
-    let problem = |scene: &Scene, settings: &Settings| limits::problem(scene, settings, &Effects::of(scene, settings));
+    let problem = |scene: &Scene, settings: &Settings| {
+        limits::problem(&scene.viewed(settings), &Effects::of(&scene.viewed(settings)))
+    };
     let with_near = |near: f64| Scene { window: Window { near, ..scene.window }, ..scene.clone() };
     assert!(problem(&with_near(1e-60), &Settings::classic()).unwrap().contains("NEAR"));
     assert!(problem(&with_near(1e300), &Settings::classic()).unwrap().contains("NEAR"));
     // Not all kernels can hold what the reference can.
     if let Some(gpu) = gpu("what_f64_cannot_hold_is_refused") {
         let dust = scene_of(&format!("{ball}SPHERE dust 0 0 -4 1e-30 1 1 1 1 1 1 0 0 0 1\nAMBIENT 1 1 1"));
-        let (settings, effects) = (Settings::classic(), Effects::of(&dust, &Settings::classic()));
+        let (settings, effects) = (Settings::classic(), Effects::of(&dust.viewed(&Settings::classic())));
         assert_eq!(problem(&dust, &settings), None);
         for kernel in kernels(&gpu) {
-            let renderer = GpuRenderer::with_rounding(&gpu, &dust, &settings, &effects, kernel, kernel.rounding());
+            let renderer =
+                GpuRenderer::with_rounding(&gpu, &dust.viewed(&settings), &effects, kernel, kernel.rounding());
             match kernel {
                 Kernel::Tier(Tier::Double) => assert!(renderer.is_ok()),
                 _ => assert!(renderer.unwrap_err().to_string().contains("sphere 'dust'")),

@@ -64,11 +64,11 @@ fn masked(mask: &Mask) -> Gpu {
 }
 
 fn assert_explained(who: &str, gpu: &Gpu, tier: Tier, scene: &Scene, settings: &Settings) {
-    let effects = Effects::of(scene, settings);
+    let effects = Effects::of(&scene.viewed(settings));
     let (picture, not_finite) = gpu_picture(gpu, tier, scene, settings, &effects);
     assert_eq!(not_finite, 0, "{who}");
     let (expected, _) = cpu_picture::<f64>(scene, settings, &effects);
-    let reference = Reference::new(scene, settings, &effects);
+    let reference = Reference::new(&scene.viewed(settings), &effects);
     let judge = Backend::Device(gpu, tier).judge();
     let explanation = Explanation::of(&picture, &expected, &reference, &judge);
     assert_eq!(explanation.unexplained, 0, "{who}\n{}", explanation.report());
@@ -124,7 +124,7 @@ fn what_holds_the_tables_changes_no_byte() {
         if !SOME.contains(&name.as_str()) {
             continue;
         }
-        let effects = Effects::of(&scene, &settings);
+        let effects = Effects::of(&scene.viewed(&settings));
         for tier in Tier::ALL.into_iter().filter(|&tier| usual.kernel(tier).is_ok()) {
             let (expected, _) = gpu_picture(&usual, tier, &scene, &settings, &effects);
             for gpu in &mut others {

@@ -28,10 +28,10 @@ fn mirrors() -> Scene {
 fn only_rows_and_pixels_of_the_picture_are_rendered() {
     let gpu = gpu("only_rows_and_pixels_of_the_picture_are_rendered");
     let (scene, settings) = (mirrors(), Settings::classic());
-    let effects = Effects::of(&scene, &settings);
+    let effects = Effects::of(&scene.viewed(&settings));
     let backends = std::iter::once(Backend::Reference).chain(gpu.iter().map(|gpu| Backend::Device(gpu, Tier::Fast)));
     for backend in backends {
-        let mut rows = Engine::new(backend, &scene, &settings, &effects).unwrap();
+        let mut rows = Engine::new(backend, scene.viewed(&settings), &effects).unwrap();
         let (whole, _) = render_picture(&mut rows).unwrap();
         for (first, bytes) in [(0, 1), (0, 119), (0, 4801), (0, 4920), (39, 240), (40, 120), (u32::MAX, 120)] {
             let error = rows.rows(first, &mut vec![0; bytes]).unwrap_err();
@@ -43,7 +43,8 @@ fn only_rows_and_pixels_of_the_picture_are_rendered() {
         rows.rows(13, &mut some).unwrap();
         assert!(some == whole[13 * 120..36 * 120], "{backend:?}");
 
-        let mut list: Engine<Pixels> = Engine::with(backend, &scene, &settings, &effects, &Options::default()).unwrap();
+        let mut list: Engine<Pixels> =
+            Engine::with(backend, scene.viewed(&settings), &effects, &Options::default()).unwrap();
         let mut color = [[7; 3]];
         for pixel in [[40, 0], [0, 40], [100, 100], [u32::MAX, u32::MAX]] {
             let error = list.pixels(&[pixel], &mut color).unwrap_err();
@@ -64,7 +65,7 @@ fn only_rows_and_pixels_of_the_picture_are_rendered() {
         let error = Filler::new(backend).unwrap().filled(&other, &[[0; 3]], Fill::Nearest).unwrap_err();
         assert!(matches!(error, Error::Misuse(Misuse::Colors { colors: 1, .. })), "{error}");
     }
-    let reference = Reference::<f64>::new(&scene, &settings, &effects);
+    let reference = Reference::<f64>::new(&scene.viewed(&settings), &effects);
     assert!(reference.color(39, 39).is_some());
     assert_eq!([reference.color(40, 0), reference.color(0, 40), reference.color(100, 100)], [None; 3]);
 }
@@ -73,7 +74,7 @@ fn only_rows_and_pixels_of_the_picture_are_rendered() {
 fn pictures_out_of_range_are_refused() {
     let gpu = gpu("pictures_out_of_range_are_refused");
     let (scene, settings) = (mirrors(), Settings::classic());
-    let effects = Effects::of(&scene, &settings);
+    let effects = Effects::of(&scene.viewed(&settings));
     let sized = |width, height| Scene { width, height, ..scene.clone() };
     for backend in std::iter::once(Backend::Reference).chain(gpu.iter().map(|gpu| Backend::Device(gpu, Tier::Fast))) {
         for (scene, settings, name) in [
@@ -84,7 +85,7 @@ fn pictures_out_of_range_are_refused() {
             (sized(40, 40), Settings { samples_per_side: 70_000, ..settings }, "samples"),
             (sized(40, 40), Settings { max_depth: 1001, ..settings }, "max_depth"),
         ] {
-            let error = Engine::new(backend, &scene, &settings, &effects).unwrap_err();
+            let error = Engine::new(backend, scene.viewed(&settings), &effects).unwrap_err();
             assert!(matches!(&error, Error::Misuse(Misuse::Picture(why)) if why.contains(name)), "{error}");
         }
     }
@@ -164,8 +165,8 @@ fn other_scenes_are_not_echoed() {
     let Some(gpu) = gpu("other_scenes_are_not_echoed") else { return };
     let settings = Settings::classic();
     let echo = |scene: &Scene, effects: EffectSet| {
-        let effects = Effects::requested(scene, &settings, &Request::Exactly(effects));
-        echo_layout(&gpu, scene, &settings, &effects, Kernel::Tier(Tier::Fast))
+        let effects = Effects::requested(&scene.viewed(&settings), &Request::Exactly(effects));
+        echo_layout(&gpu, &scene.viewed(&settings), &effects, Kernel::Tier(Tier::Fast))
     };
     let (two, none) = (mirrors(), scene_of("LIGHT l 3 4 1 1 1 1"));
     assert!(echo(&two, EffectSet::ALL).is_ok());

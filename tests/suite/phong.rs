@@ -223,7 +223,7 @@ fn check(test: &str, cases: &[Case], ways: Ways) {
             judge.color("reference in f64", &color_of::<f64>(&scene, settings), DOUBLE);
             judge.color("reference in double-double", &color_of::<Dd>(&scene, settings), DOUBLE);
             judge.color("reference in f32", &color_of::<f32>(&scene, settings), SINGLE);
-            let effects = Effects::of(&scene, settings);
+            let effects = Effects::of(&scene.viewed(settings));
             let (picture, _) = cpu_picture::<f64>(&scene, settings, &effects);
             judge.levels("reference", picture.pixel(PIXEL.0, PIXEL.1), DOUBLE);
             let mut on = |gpu: &mut Gpu, tiers: &[Tier], ways: Ways, name: &str| {
@@ -254,7 +254,7 @@ fn check(test: &str, cases: &[Case], ways: Ways) {
 }
 
 fn color_of<T: Real>(scene: &Scene, settings: &Settings) -> DVec3 {
-    Reference::<T>::new(scene, settings, &Effects::of(scene, settings)).color(PIXEL.0, PIXEL.1).unwrap()
+    Reference::<T>::new(&scene.viewed(settings), &Effects::of(&scene.viewed(settings))).color(PIXEL.0, PIXEL.1).unwrap()
 }
 
 /// Compares what renderers show with what a case expects.

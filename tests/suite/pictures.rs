@@ -38,10 +38,10 @@ fn short(file: &Path) -> String {
 }
 
 fn assert_explained(case: &str, picture: &Picture, scene: &trueray::scene::Scene, settings: &Settings, judge: Judge) {
-    let effects = Effects::of(scene, settings);
+    let effects = Effects::of(&scene.viewed(settings));
     let (expected, not_finite) = cpu_picture::<f64>(scene, settings, &effects);
     assert_eq!(not_finite, 0, "{case}: reference");
-    let reference = Reference::new(scene, settings, &effects);
+    let reference = Reference::new(&scene.viewed(settings), &effects);
     let explanation = Explanation::of(picture, &expected, &reference, &judge);
     assert_eq!(explanation.unexplained, 0, "{case}:\n{}", explanation.report());
 }
@@ -50,7 +50,8 @@ fn assert_explained(case: &str, picture: &Picture, scene: &trueray::scene::Scene
 fn gpu_differs_from_the_reference_only_where_explained() {
     let Some(gpu) = gpu("gpu_differs_from_the_reference_only_where_explained") else { return };
     for_each_case(|case, scene, settings| {
-        let (picture, not_finite) = gpu_picture(&gpu, Tier::Fast, scene, settings, &Effects::of(scene, settings));
+        let (picture, not_finite) =
+            gpu_picture(&gpu, Tier::Fast, scene, settings, &Effects::of(&scene.viewed(settings)));
         assert_eq!(not_finite, 0, "{case}");
         assert_explained(case, &picture, scene, settings, Judge::of(Tier::Fast));
     });
@@ -60,7 +61,7 @@ fn gpu_differs_from_the_reference_only_where_explained() {
 #[test]
 fn single_precision_differs_from_the_reference_only_where_explained() {
     for_each_case(|case, scene, settings| {
-        let (picture, not_finite) = cpu_picture::<f32>(scene, settings, &Effects::of(scene, settings));
+        let (picture, not_finite) = cpu_picture::<f32>(scene, settings, &Effects::of(&scene.viewed(settings)));
         assert_eq!(not_finite, 0, "{case}");
         assert_explained(case, &picture, scene, settings, Judge::of(Tier::Fast));
     });
@@ -70,20 +71,20 @@ fn single_precision_differs_from_the_reference_only_where_explained() {
 fn what_a_scene_does_not_call_for_changes_no_byte_on_the_gpu() {
     let Some(gpu) = gpu("what_a_scene_does_not_call_for_changes_no_byte_on_the_gpu") else { return };
     for_each_case(|case, scene, settings| {
-        let all = Effects::requested(scene, settings, &Request::Exactly(EffectSet::ALL));
-        let (specialised, _) = gpu_picture(&gpu, Tier::Fast, scene, settings, &Effects::of(scene, settings));
+        let all = Effects::requested(&scene.viewed(settings), &Request::Exactly(EffectSet::ALL));
+        let (specialised, _) = gpu_picture(&gpu, Tier::Fast, scene, settings, &Effects::of(&scene.viewed(settings)));
         let (generic, _) = gpu_picture(&gpu, Tier::Fast, scene, settings, &all);
-        assert!(specialised == generic, "{case}: {}", Effects::of(scene, settings).set);
+        assert!(specialised == generic, "{case}: {}", Effects::of(&scene.viewed(settings)).set);
     });
 }
 
 #[test]
 fn what_a_scene_does_not_call_for_changes_no_byte_on_the_cpu() {
     for_each_case(|case, scene, settings| {
-        let all = Effects::requested(scene, settings, &Request::Exactly(EffectSet::ALL));
-        let (specialised, _) = cpu_picture::<f64>(scene, settings, &Effects::of(scene, settings));
+        let all = Effects::requested(&scene.viewed(settings), &Request::Exactly(EffectSet::ALL));
+        let (specialised, _) = cpu_picture::<f64>(scene, settings, &Effects::of(&scene.viewed(settings)));
         let (generic, _) = cpu_picture::<f64>(scene, settings, &all);
-        assert!(specialised == generic, "{case}: {}", Effects::of(scene, settings).set);
+        assert!(specialised == generic, "{case}: {}", Effects::of(&scene.viewed(settings)).set);
     });
 }
 
@@ -94,9 +95,9 @@ fn switching_off_a_needed_effect_changes_the_picture() {
     let settings = Settings::classic();
     for effect in Effect::ALL {
         let scene = scene(&root().join(format!("scenes/effects/{effect}.txt")));
-        let needed = Effects::of(&scene, &settings);
+        let needed = Effects::of(&scene.viewed(&settings));
         assert!(needed.set.has(effect), "{effect}");
-        let without = Effects::requested(&scene, &settings, &Request::Changed(vec![(effect, false)]));
+        let without = Effects::requested(&scene.viewed(&settings), &Request::Changed(vec![(effect, false)]));
         assert!(
             gpu_picture(&gpu, Tier::Fast, &scene, &settings, &needed)
                 != gpu_picture(&gpu, Tier::Fast, &scene, &settings, &without),
@@ -112,9 +113,9 @@ fn bands_give_the_same_bytes_as_one_piece() {
     let Some(gpu) = gpu("bands_give_the_same_bytes_as_one_piece") else { return };
     let scene = scene(&root().join("scenes/effects/reflections.txt"));
     let settings = Settings::classic();
-    let effects = Effects::of(&scene, &settings);
+    let effects = Effects::of(&scene.viewed(&settings));
     let (whole, _) = gpu_picture(&gpu, Tier::Fast, &scene, &settings, &effects);
-    let mut renderer = GpuRenderer::new(&gpu, &scene, &settings, &effects, Tier::Fast).unwrap();
+    let mut renderer = GpuRenderer::new(&gpu, &scene.viewed(&settings), &effects, Tier::Fast).unwrap();
     let row_bytes = scene.width as usize * 3;
     let mut pieces = Vec::new();
     let mut first = 0;
@@ -136,8 +137,8 @@ fn a_large_picture_is_rendered_in_short_dispatches() {
     let mut scene = scene_of("SPHERE s 0 0 -5 2 2 2 1 1 1 1 0 0 0 1\nAMBIENT 1 1 1\nBACK 0 0 1");
     (scene.width, scene.height) = (4001, 3003);
     let settings = Settings::classic();
-    let effects = Effects::of(&scene, &settings);
-    let mut engine = Engine::new(Backend::Device(&gpu, Tier::Fast), &scene, &settings, &effects).unwrap();
+    let effects = Effects::of(&scene.viewed(&settings));
+    let mut engine = Engine::new(Backend::Device(&gpu, Tier::Fast), scene.viewed(&settings), &effects).unwrap();
     let mut white = 0_u64;
     let mut bands = 0;
     render_bands(&mut engine, |band| {
@@ -148,7 +149,7 @@ fn a_large_picture_is_rendered_in_short_dispatches() {
     .unwrap();
     assert!(bands > 1);
     let mut rgb = vec![0; scene.width as usize * scene.height as usize * 3];
-    Reference::<f64>::new(&scene, &settings, &effects).rows(0, &mut rgb).unwrap();
+    Reference::<f64>::new(&scene.viewed(&settings), &effects).rows(0, &mut rgb).unwrap();
     let expected = rgb.as_chunks::<3>().0.iter().filter(|pixel| **pixel == [255; 3]).count() as u64;
     assert!(white.abs_diff(expected) <= 40, "{white} {expected}"); // silhouettes
     let times = engine.times();
@@ -168,8 +169,8 @@ fn robust_and_double_differ_from_the_reference_only_where_explained() {
     for file in scene_files(&["basic", "effects", "refraction", "hard"]) {
         let scene = scene(&file);
         for (name, settings) in &conventions()[..2] {
-            let effects = Effects::of(&scene, settings);
-            let all = Effects::requested(&scene, settings, &Request::Exactly(EffectSet::ALL));
+            let effects = Effects::of(&scene.viewed(settings));
+            let all = Effects::requested(&scene.viewed(settings), &Request::Exactly(EffectSet::ALL));
             for tier in tiers(&gpu).filter(|&tier| tier > Tier::Fast) {
                 let case = format!("{}, {name}, {tier}", short(&file));
                 let (picture, not_finite) = gpu_picture(&gpu, tier, &scene, settings, &effects);
@@ -188,8 +189,8 @@ fn auto_picks_a_tier_that_covers_the_scene() {
     let settings = Settings::exact();
     for file in scene_files(&["hard"]) {
         let scene = scene(&file);
-        let effects = Effects::of(&scene, &settings);
-        let selection = Selection::of(&scene, &settings, &effects, precision::Request(None), gpu.ladder());
+        let effects = Effects::of(&scene.viewed(&settings));
+        let selection = Selection::of(&scene.viewed(&settings), &effects, precision::Request(None), gpu.ladder());
         if gpu.kernel(selection.tier).is_ok() {
             let (picture, _) = gpu_picture(&gpu, selection.tier, &scene, &settings, &effects);
             let judge = Backend::Device(&gpu, selection.tier).judge();
@@ -198,8 +199,11 @@ fn auto_picks_a_tier_that_covers_the_scene() {
     }
     let plain =
         scene_of("SPHERE a 0 0 -5 1 1 1 1 1 1 1 1 1 0 50\nSPHERE b 1 0 -4 1 2 1 1 1 1 1 1 1 1 50\nLIGHT l 5 5 5 1 1 1");
-    let effects = Effects::of(&plain, &settings);
-    assert_eq!(Selection::of(&plain, &settings, &effects, precision::Request(None), gpu.ladder()).tier, Tier::Fast);
+    let effects = Effects::of(&plain.viewed(&settings));
+    assert_eq!(
+        Selection::of(&plain.viewed(&settings), &effects, precision::Request(None), gpu.ladder()).tier,
+        Tier::Fast
+    );
 }
 
 /// What was parsed before a device was open is what a software device with its class's tuning renders with; where it is for other
@@ -210,19 +214,19 @@ fn kernels_are_parsed_ahead_for_the_picture_that_follows() {
     let (settings, software) = (Settings::classic(), Tuning::of(Class::Software));
     let is_expected = own.device.info.kind == DeviceKind::Software && own.tuned().tuning == software;
     let ahead_of = |scene: &trueray::scene::Scene| {
-        Ahead::of(scene, &settings, &Effects::of(scene, &settings), precision::Request(None))
+        Ahead::of(&scene.viewed(&settings), &Effects::of(&scene.viewed(&settings)), precision::Request(None))
     };
     let glass = scene(&root().join("scenes/refraction/glass-ball.txt"));
     for file in scene_files(&["basic"]) {
         let scene = scene(&file);
-        let effects = Effects::of(&scene, &settings);
-        let tier = Selection::of(&scene, &settings, &effects, precision::Request(None), own.ladder()).tier;
+        let effects = Effects::of(&scene.viewed(&settings));
+        let tier = Selection::of(&scene.viewed(&settings), &effects, precision::Request(None), own.ladder()).tier;
         let (expected, _) = gpu_picture(&own, tier, &scene, &settings, &effects);
         for ahead in [ahead_of(&scene), ahead_of(&glass)].into_iter().flatten() {
             let variant = ahead.variant();
             let gpu = Gpu::open(&Choice::Auto).unwrap().having(Some(ahead));
             if is_expected && variant.refraction.is_none() {
-                let renderer = GpuRenderer::new(&gpu, &scene, &settings, &effects, tier).unwrap();
+                let renderer = GpuRenderer::new(&gpu, &scene.viewed(&settings), &effects, tier).unwrap();
                 assert_eq!(renderer.variant(), variant, "{}", short(&file));
             }
             assert!(gpu_picture(&gpu, tier, &scene, &settings, &effects).0 == expected, "{}", short(&file));
@@ -239,8 +243,8 @@ fn a_lost_device_is_an_error_and_no_panic() {
     let own = Gpu::open(&Choice::Gpu).unwrap();
     let scene = scene_of("SPHERE s 0 0 -5 2 2 2 1 1 1 1 0 0 0 1\nAMBIENT 1 1 1");
     let settings = Settings::classic();
-    let effects = Effects::of(&scene, &settings);
-    let mut renderer = GpuRenderer::new(&own, &scene, &settings, &effects, Tier::Fast).unwrap();
+    let effects = Effects::of(&scene.viewed(&settings));
+    let mut renderer = GpuRenderer::new(&own, &scene.viewed(&settings), &effects, Tier::Fast).unwrap();
     let mut rgb = vec![0; 40 * 40 * 3];
     assert!(renderer.rows(0, &mut rgb).unwrap().cut.is_empty());
     own.device.destroy();
@@ -257,7 +261,7 @@ fn samples_average_an_edge() {
     let gpu = gpu("samples_average_an_edge");
     for (side, expected) in [(1, None), (2, Some(128)), (4, Some(128)), (6, Some(128))] {
         let settings = Settings { samples_per_side: side, ..Settings::exact() };
-        let effects = Effects::of(&scene, &settings);
+        let effects = Effects::of(&scene.viewed(&settings));
         let mut pictures = vec![cpu_picture::<f64>(&scene, &settings, &effects).0];
         if let Some(gpu) = &gpu {
             pictures.extend(tiers(gpu).map(|tier| gpu_picture(gpu, tier, &scene, &settings, &effects).0));
@@ -278,7 +282,7 @@ fn samples_of_one_colour_change_no_level() {
     let scene = scene_of("SPHERE s 0 0 -5 0.5 0.5 0.5 1 1 1 1 0 0 0 1\nAMBIENT 1 1 1\nBACK 0.2 0.6 0.1");
     for side in [1, 2, 3, 5] {
         let settings = Settings { samples_per_side: side, ..Settings::classic() };
-        let effects = Effects::of(&scene, &settings);
+        let effects = Effects::of(&scene.viewed(&settings));
         let background = settings.quantize.levels(scene.background);
         let inside_a_covered_tile = (16, 16);
         let (on_cpu, _) = cpu_picture::<f64>(&scene, &settings, &effects);
@@ -297,7 +301,7 @@ fn pictures_of_several_samples_differ_from_the_reference_only_where_explained() 
         let settings = Settings { samples_per_side: side, ..base };
         for file in scene_files(&["effects"]) {
             let scene = scene(&file);
-            let effects = Effects::of(&scene, &settings);
+            let effects = Effects::of(&scene.viewed(&settings));
             let (picture, not_finite) = gpu_picture(&gpu, Tier::Fast, &scene, &settings, &effects);
             assert_eq!(not_finite, 0);
             assert_explained(
@@ -308,7 +312,7 @@ fn pictures_of_several_samples_differ_from_the_reference_only_where_explained() 
                 Judge::of(Tier::Fast),
             );
             if side == 2 {
-                let all = Effects::requested(&scene, &settings, &Request::Exactly(EffectSet::ALL));
+                let all = Effects::requested(&scene.viewed(&settings), &Request::Exactly(EffectSet::ALL));
                 let (generic, _) = gpu_picture(&gpu, Tier::Fast, &scene, &settings, &all);
                 assert!(picture == generic, "{}: {}", short(&file), effects.set);
             }
@@ -331,14 +335,14 @@ fn large_mirrors_show_no_acne() {
         ));
         (scene.width, scene.height) = (320, 240);
         let settings = Settings::classic();
-        let effects = Effects::of(&scene, &settings);
+        let effects = Effects::of(&scene.viewed(&settings));
         let (expected, _) = cpu_picture::<f64>(&scene, &settings, &effects);
         for tier in tiers(&gpu) {
             let case = format!("radius {radius}, {tier}");
             let (picture, _) = gpu_picture(&gpu, tier, &scene, &settings, &effects);
             // A pixel of acne is none that lies next to a silhouette or a shadow.
             assert_explained(&case, &picture, &scene, &settings, Backend::Device(&gpu, tier).judge());
-            let demand = Demand::of(&scene, &settings, &effects);
+            let demand = Demand::of(&scene.viewed(&settings), &effects);
             let differing = Difference::between(&picture, &expected).unwrap().differing.over_0;
             assert!(tier < Tier::Double || demand.beyond(tier, &scene).is_none(), "{case}");
             assert!(demand.beyond(tier, &scene).is_some() || differing <= 7, "{case}: {differing} of 76,800");

@@ -14,7 +14,7 @@ const COUNTED: Options = Options { count_rays: true, device_clock: false, pixel_
 
 /// The rays of the whole picture, and the picture.
 fn counted(backend: Backend, scene: &Scene, settings: &Settings, effects: &Effects) -> (Rays, Vec<u8>) {
-    let mut engine = Engine::with(backend, scene, settings, effects, &COUNTED).unwrap();
+    let mut engine = Engine::with(backend, scene.viewed(settings), effects, &COUNTED).unwrap();
     let (rgb, _) = render_picture(&mut engine).unwrap();
     (engine.rays().unwrap(), rgb)
 }
@@ -33,7 +33,7 @@ fn the_device_counts_the_rays_of_the_reference() {
                 continue;
             }
             let case = format!("{}, {name}", file.display());
-            let effects = Effects::of(&scene, &settings);
+            let effects = Effects::of(&scene.viewed(&settings));
             let (expected, picture) = counted(Backend::Reference, &scene, &settings, &effects);
             let samples = u64::from(settings.samples_per_side * settings.samples_per_side);
             assert_eq!(expected.primary, 61 * 45 * samples, "{case}");
@@ -63,7 +63,7 @@ fn rays_are_counted_alike_however_they_are_walked() {
     for request in
         [Request::Auto, only(&EffectSet::ALL.iter().collect::<Vec<_>>()), only(&[Effect::Shadows]), only(&[])]
     {
-        let effects = Effects::requested(&scene, &settings, &request);
+        let effects = Effects::requested(&scene.viewed(&settings), &request);
         let (expected, _) = counted(Backend::Reference, &scene, &settings, &effects);
         for (in_place_below, in_turn_from) in [(0.0, 1e9), (0.0, 0.0), (1e9, 1e9)] {
             gpu.set_tuning(Tuning { in_place_below, in_turn_from, ..own }).unwrap();
@@ -81,10 +81,10 @@ fn rays_of_a_part_of_the_pixels_are_counted() {
         "SPHERE a 0.3 0 -5 1 1 1 1 1 1 0 1 0 0.5 1\nSPHERE b 1.5 0 -4 0.5 0.5 0.5 1 1 1 0 1 0 0.5 1\nLIGHT l 3 4 1 1 1 1",
     );
     let settings = Settings { samples_per_side: 2, ..Settings::exact() };
-    let effects = Effects::of(&scene, &settings);
+    let effects = Effects::of(&scene.viewed(&settings));
     let samples = Samples::new((scene.width, scene.height), &Density::sparse(0.2)).unwrap();
     let count = |backend| {
-        let mut engine = Engine::with(backend, &scene, &settings, &effects, &COUNTED).unwrap();
+        let mut engine = Engine::with(backend, scene.viewed(&settings), &effects, &COUNTED).unwrap();
         render_partial(&mut engine, backend, &samples, Fill::Nearest, |_| ()).unwrap();
         engine.rays().unwrap()
     };
@@ -109,7 +109,7 @@ fn a_pixel_may_take_a_hundred_thousand_rays() {
         Settings { max_depth: 500, ..Settings::exact() },
         Settings { max_depth: 250, samples_per_side: 2, ..Settings::exact() },
     ] {
-        let mut effects = Effects::of(&scene, &settings);
+        let mut effects = Effects::of(&scene.viewed(&settings));
         effects.set = effects.set.with(Effect::Shadows, true);
         let (expected, _) = counted(Backend::Reference, &scene, &settings, &effects);
         let pixels = u64::from(scene.width * scene.height);
@@ -125,10 +125,10 @@ fn rays_that_are_not_asked_for_are_not_counted() {
     let Some(gpu) = gpu("rays_that_are_not_asked_for_are_not_counted") else { return };
     let scene = scene_of("SPHERE a 0 0 -5 1 1 1 1 1 1 0 1 0 0.5 1\nLIGHT l 3 4 1 1 1 1");
     let (settings, backend) = (Settings::classic(), Backend::Device(&gpu, Tier::Fast));
-    let effects = Effects::of(&scene, &settings);
-    let mut engine = Engine::new(backend, &scene, &settings, &effects).unwrap();
+    let effects = Effects::of(&scene.viewed(&settings));
+    let mut engine = Engine::new(backend, scene.viewed(&settings), &effects).unwrap();
     render_picture(&mut engine).unwrap();
     assert_eq!(engine.rays(), None);
-    let engine: Engine<Pixels> = Engine::with(backend, &scene, &settings, &effects, &Options::default()).unwrap();
+    let engine: Engine<Pixels> = Engine::with(backend, scene.viewed(&settings), &effects, &Options::default()).unwrap();
     assert_eq!(engine.rays(), None);
 }

@@ -135,7 +135,7 @@ fn conventions() -> [Settings; 2] {
 
 /// Everything that renders, by name: the reference and each tier of the device.
 fn pictures(scene: &Scene, settings: &Settings, test: &str) -> Vec<(String, Picture)> {
-    let effects = Effects::of(scene, settings);
+    let effects = Effects::of(&scene.viewed(settings));
     let (picture, not_finite) = cpu_picture::<f64>(scene, settings, &effects);
     assert_eq!(not_finite, 0);
     let mut pictures = vec![("reference".to_owned(), picture)];
@@ -205,9 +205,9 @@ fn each_depth_adds_what_it_must() {
         for max_depth in 0..=12 {
             let settings = Settings { max_depth, sampling: Settings::exact().sampling, ..base };
             let expected = if max_depth == 0 { KA } else { KA + KT * inner(max_depth - 1, BACK) };
-            let effects = Effects::of(&scene, &settings);
+            let effects = Effects::of(&scene.viewed(&settings));
             assert_eq!(effects.depth, max_depth);
-            let color = Reference::<f64>::new(&scene, &settings, &effects).color(4, 4).unwrap();
+            let color = Reference::<f64>::new(&scene.viewed(&settings), &effects).color(4, 4).unwrap();
             assert!((color.x - expected).abs() < 1e-14, "depth {max_depth}: {} instead of {expected}", color.x);
             for (name, picture) in pictures(&scene, &settings, "each_depth_adds_what_it_must") {
                 let level = settings.quantize.levels(DVec3::splat(expected))[0];
@@ -224,7 +224,7 @@ fn deep_trees_fit_the_stack() {
     (scene.width, scene.height) = (32, 24);
     for max_depth in [1, 2, 7, 13] {
         let settings = Settings { max_depth, ..Settings::exact() };
-        let effects = Effects::of(&scene, &settings);
+        let effects = Effects::of(&scene.viewed(&settings));
         assert_eq!((effects.depth, effects.waiting(&scene)), (max_depth, max_depth));
         let all = pictures(&scene, &settings, "deep_trees_fit_the_stack");
         for (name, picture) in all.iter().filter(|(name, _)| name == "double") {
@@ -235,8 +235,8 @@ fn deep_trees_fit_the_stack() {
     let chain =
         scene_of("SPHERE s 0 0 -5 1 1 1 1 1 1 1 0 0 0 1 0.9 1.5\nSPHERE m 3 0 -5 1 1 1 1 1 1 1 0 0 1 1\nAMBIENT 1 1 1");
     let settings = Settings { max_depth: 1000, ..Settings::exact() };
-    assert_eq!(Effects::of(&chain, &settings).waiting(&chain), 1);
-    let none = Effects::requested(&chain, &settings, &"-refraction".parse().unwrap());
+    assert_eq!(Effects::of(&chain.viewed(&settings)).waiting(&chain), 1);
+    let none = Effects::requested(&chain.viewed(&settings), &"-refraction".parse().unwrap());
     assert_eq!(none.waiting(&chain), 0);
 }
 
@@ -251,7 +251,7 @@ fn odd_indices_stay_finite() {
         for base in conventions() {
             let settings = Settings { max_depth: 8, ..base };
             pictures(&scene, &settings, "odd_indices_stay_finite");
-            let (_, not_finite) = cpu_picture::<f32>(&scene, &settings, &Effects::of(&scene, &settings));
+            let (_, not_finite) = cpu_picture::<f32>(&scene, &settings, &Effects::of(&scene.viewed(&settings)));
             assert_eq!(not_finite, 0, "{eta}");
         }
     }
@@ -281,10 +281,10 @@ fn pairs_differ_from_the_reference_only_where_explained() {
     for file in scene_files(&["refraction"]) {
         let scene = scene(&file);
         for settings in conventions() {
-            let effects = Effects::of(&scene, &settings);
+            let effects = Effects::of(&scene.viewed(&settings));
             let (picture, not_finite) = gpu_picture(&gpu, Tier::Double, &scene, &settings, &effects);
             let (expected, _) = cpu_picture::<f64>(&scene, &settings, &effects);
-            let reference = Reference::new(&scene, &settings, &effects);
+            let reference = Reference::new(&scene.viewed(&settings), &effects);
             let judge = Backend::Device(&gpu, Tier::Double).judge();
             let explanation = Explanation::of(&picture, &expected, &reference, &judge);
             assert_eq!((not_finite, explanation.unexplained), (0, 0), "{}:\n{}", file.display(), explanation.report());
@@ -305,13 +305,13 @@ fn wrong_glass_stays_unexplained() {
     ];
     for file in ["glass-ball", "total-reflection", "glass-in-glass", "bubbles", "ellipsoids", "eye-inside"] {
         let scene = scene(&root().join(format!("scenes/refraction/{file}.txt")));
-        let effects = Effects::of(&scene, &settings);
+        let effects = Effects::of(&scene.viewed(&settings));
         let (expected, _) = cpu_picture::<f64>(&scene, &settings, &effects);
-        let reference = Reference::new(&scene, &settings, &effects);
+        let reference = Reference::new(&scene.viewed(&settings), &effects);
         for (name, mistake) in mistakes {
             let mut wrong = scene.clone();
             mistake(&mut wrong);
-            let (picture, _) = cpu_picture::<f64>(&wrong, &settings, &Effects::of(&wrong, &settings));
+            let (picture, _) = cpu_picture::<f64>(&wrong, &settings, &Effects::of(&wrong.viewed(&settings)));
             for tier in Tier::ALL {
                 let explanation = Explanation::of(&picture, &expected, &reference, &Judge::of(tier));
                 let share = explanation.unexplained as f64 / explanation.differing as f64;
@@ -331,13 +331,13 @@ fn refraction_can_be_switched_off() {
     opaque.spheres.iter_mut().for_each(|sphere| sphere.kt = 0.0);
     for settings in conventions() {
         let off: Request = "-refraction".parse().unwrap();
-        let effects = Effects::requested(&scene, &settings, &off);
+        let effects = Effects::requested(&scene.viewed(&settings), &off);
         let (picture, _) = cpu_picture::<f64>(&scene, &settings, &effects);
-        let (expected, _) = cpu_picture::<f64>(&opaque, &settings, &Effects::of(&opaque, &settings));
+        let (expected, _) = cpu_picture::<f64>(&opaque, &settings, &Effects::of(&opaque.viewed(&settings)));
         assert!(picture == expected);
         if let Some(gpu) = gpu("refraction_can_be_switched_off") {
             let on_gpu = gpu_picture(&gpu, Tier::Fast, &scene, &settings, &effects).0;
-            let expected = gpu_picture(&gpu, Tier::Fast, &opaque, &settings, &Effects::of(&opaque, &settings)).0;
+            let expected = gpu_picture(&gpu, Tier::Fast, &opaque, &settings, &Effects::of(&opaque.viewed(&settings))).0;
             assert!(on_gpu == expected);
         }
     }

@@ -194,10 +194,11 @@ fn sampled_pixels_are_those_of_the_full_picture() {
         (many, side(1)),
     ] {
         let size = (scene.width, scene.height);
-        let effects = Effects::of(&scene, &settings);
+        let effects = Effects::of(&scene.viewed(&settings));
         for &backend in &backends {
-            let (full, _) = render_picture(&mut Engine::new(backend, &scene, &settings, &effects).unwrap()).unwrap();
-            let mut in_part = Engine::with(backend, &scene, &settings, &effects, &Options::default()).unwrap();
+            let (full, _) =
+                render_picture(&mut Engine::new(backend, scene.viewed(&settings), &effects).unwrap()).unwrap();
+            let mut in_part = Engine::with(backend, scene.viewed(&settings), &effects, &Options::default()).unwrap();
             for density in [Density::FULL, Density::sparse(0.13), foveated([40.0, 30.0], 10.0, 12.0, 0.03)] {
                 let samples = Samples::new(size, &density).unwrap();
                 let rgb = render_partial(&mut in_part, backend, &samples, Fill::Smooth, |_| ()).unwrap().rgb;

@@ -4,7 +4,6 @@ use std::collections::HashSet;
 use std::num::NonZeroU32;
 
 use trueray::accel::{Acceleration, Lists};
-use trueray::camera::Camera;
 use trueray::effects::{Effect, EffectSet, Effects, Request};
 use trueray::gpu::layout::{double, single};
 use trueray::gpu::{
@@ -537,7 +536,7 @@ fn the_device_reads_every_field_where_the_host_wrote_it() {
          LIGHT l 21 22 23 0.21 0.22 0.23\nBACK 0.31 0.32 0.33\nAMBIENT 0.41 0.42 0.43",
     );
     let settings = Settings { max_depth: 5, ..Settings::classic() };
-    let effects = Effects::requested(&scene, &settings, &Request::Exactly(EffectSet::ALL));
+    let effects = Effects::requested(&scene.viewed(&settings), &Request::Exactly(EffectSet::ALL));
     let x = |i: f32| -1.0 + 2.0 * i / 40.0;
     let expected: [&[f32]; 5] = [
         &[0.31, 0.32, 0.33, 1.0 + 1e-6, 0.41, 0.42, 0.43, 1e-3, 1e-3, 0.0],
@@ -552,7 +551,7 @@ fn the_device_reads_every_field_where_the_host_wrote_it() {
         expected[sphere].insert(7, index);
     }
     for kernel in Tier::ALL.into_iter().filter_map(|tier| gpu.kernel(tier).ok()) {
-        let accel = Acceleration::new(&scene, &Camera::new(&scene, &settings), effects.set, kernel.rounding());
+        let accel = Acceleration::new(&scene.viewed(&settings), effects.set, kernel.rounding());
         let grid = accel.grid.unwrap();
         let single = |x: f64| (x as f32).to_bits();
         let mut expected = expected.clone();
@@ -576,6 +575,10 @@ fn the_device_reads_every_field_where_the_host_wrote_it() {
             0.25_f32.next_up().to_bits(),
             255.0_f32.to_bits(),
         ]);
-        assert_eq!(echo_layout(&gpu, &scene, &settings, &effects, kernel).unwrap(), expected.concat(), "{kernel:?}");
+        assert_eq!(
+            echo_layout(&gpu, &scene.viewed(&settings), &effects, kernel).unwrap(),
+            expected.concat(),
+            "{kernel:?}"
+        );
     }
 }

@@ -58,9 +58,10 @@ fn tiny() -> Scene {
 }
 
 fn measure(scene: &Scene, gpu: Option<&Gpu>, settings: &Settings) -> Study {
-    let effects = |settings: &Settings| Effects::of(scene, settings);
-    let selection = Selection::of(scene, settings, &effects(settings), Request(None), &Tier::ALL);
-    let input = StudyInput { name: "tiny, <scene>", scene, settings, effects: &effects, gpu, selection: &selection };
+    let viewed = scene.viewed(settings);
+    let selection = Selection::of(&viewed, &Effects::of(&viewed), Request(None), &Tier::ALL);
+    let input =
+        StudyInput { name: "tiny, <scene>", scene, settings, effects: &Effects::of, gpu, selection: &selection };
     study(&input, &StudyPlan { runs: 1, seconds: 0.0, depths: Vec::new(), sides: vec![1, 2] }).unwrap()
 }
 

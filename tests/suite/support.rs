@@ -101,7 +101,7 @@ pub(crate) fn gpu_picture(
     settings: &Settings,
     effects: &Effects,
 ) -> (Picture, u64) {
-    let mut engine = Engine::new(Backend::Device(gpu, tier), scene, settings, effects).unwrap();
+    let mut engine = Engine::new(Backend::Device(gpu, tier), scene.viewed(settings), effects).unwrap();
     let (rgb, not_finite) = render_picture(&mut engine).unwrap();
     (picture(scene, rgb), not_finite)
 }
@@ -109,7 +109,7 @@ pub(crate) fn gpu_picture(
 /// The CPU's picture in the scalar `T` and its number of pixels that are not finite.
 pub(crate) fn cpu_picture<T: Real>(scene: &Scene, settings: &Settings, effects: &Effects) -> (Picture, u64) {
     let mut rgb = vec![0; scene.width as usize * scene.height as usize * 3];
-    let tally = Reference::<T>::new(scene, settings, effects).rows(0, &mut rgb).unwrap();
+    let tally = Reference::<T>::new(&scene.viewed(settings), effects).rows(0, &mut rgb).unwrap();
     (picture(scene, rgb), tally.not_finite)
 }
 

@@ -134,7 +134,7 @@ fn the_reference_hits_what_rays_touch() {
     for case in cases().filter(is_whole) {
         let scene = case.scene();
         for settings in conventions() {
-            let (picture, _) = cpu_picture::<f64>(&scene, &settings, &Effects::of(&scene, &settings));
+            let (picture, _) = cpu_picture::<f64>(&scene, &settings, &Effects::of(&scene.viewed(&settings)));
             tangents += assert_exact(&case, &settings, &picture);
         }
     }
@@ -153,7 +153,7 @@ fn the_last_place_of_a_radius_decides() {
         for (is_hit, next) in [(false, f64::next_down as fn(f64) -> f64), (true, f64::next_up)] {
             let mut scene = scene.clone();
             scene.spheres[0].scale = glam::DVec3::from_array(scene.spheres[0].scale.to_array().map(next));
-            let reference = Reference::<f64>::new(&scene, &settings, &Effects::of(&scene, &settings));
+            let reference = Reference::<f64>::new(&scene.viewed(&settings), &Effects::of(&scene.viewed(&settings)));
             for &[x, y] in &touched {
                 assert_eq!(reference.color(x, y).unwrap().x == 1.0, is_hit, "{:?}, pixel {x} {y}", case.center);
                 tangents += 1;
@@ -171,7 +171,7 @@ fn devices_hit_what_rays_touch() {
     for case in cases().filter(is_whole).step_by(12) {
         let scene = case.scene();
         for settings in conventions() {
-            let effects = Effects::of(&scene, &settings);
+            let effects = Effects::of(&scene.viewed(&settings));
             for tier in [Tier::Robust, Tier::Double].into_iter().filter(|&tier| gpu.kernel(tier).is_ok()) {
                 let (picture, _) = gpu_picture(&gpu, tier, &scene, &settings, &effects);
                 tangents += assert_exact(&case, &settings, &picture);
@@ -195,14 +195,15 @@ fn what_follows_a_tangent_is_decided_too() {
     (scene.width, scene.height) = (120, 120);
     for side in [1, 2] {
         let settings = Settings { samples_per_side: side, ..Settings::classic() };
-        let effects = Effects::of(&scene, &settings);
+        let effects = Effects::of(&scene.viewed(&settings));
         let (expected, _) = cpu_picture::<f64>(&scene, &settings, &effects);
         let (picture, _) = gpu_picture(&gpu, Tier::Double, &scene, &settings, &effects);
         assert!(picture == expected, "{side}");
         // (3/4)(3/5, 4/5) lies on the grid of pixels, of which the ball covers a disc of radius 3/4.
         let touched: Vec<_> = [[45, 60], [75, 24], [105, 60], [60, 105], [60, 60]].to_vec();
         let backend = Backend::Device(&gpu, Tier::Double);
-        let mut engine = Engine::<Pixels>::with(backend, &scene, &settings, &effects, &Options::default()).unwrap();
+        let mut engine =
+            Engine::<Pixels>::with(backend, scene.viewed(&settings), &effects, &Options::default()).unwrap();
         let mut colors = vec![[0; 3]; touched.len()];
         engine.pixels(&touched, &mut colors).unwrap();
         for (&[x, y], color) in touched.iter().zip(colors) {

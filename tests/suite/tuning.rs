@@ -30,9 +30,16 @@ fn tunings() -> [Tuning; 5] {
 }
 
 fn render(gpu: &Gpu, tier: Tier, scene: &Scene, settings: &Settings) -> Vec<u8> {
-    let effects = Effects::of(scene, settings);
+    let effects = Effects::of(&scene.viewed(settings));
     let mut rgb = vec![0; scene.width as usize * scene.height as usize * 3];
-    assert!(GpuRenderer::new(gpu, scene, settings, &effects, tier).unwrap().rows(0, &mut rgb).unwrap().cut.is_empty());
+    assert!(
+        GpuRenderer::new(gpu, &scene.viewed(settings), &effects, tier)
+            .unwrap()
+            .rows(0, &mut rgb)
+            .unwrap()
+            .cut
+            .is_empty()
+    );
     rgb
 }
 

@@ -225,10 +225,10 @@ pub(crate) fn rendered(gpu: Option<&Gpu>, scene: &Scene, view: &ViewState) -> Ve
     let mut scene = scene.clone();
     (scene.width, scene.height) = view.size(&scene);
     let settings = view.settings();
-    let effects = Effects::requested(&scene, &settings, &view.effects);
-    let select = |gpu: &Gpu| Selection::of(&scene, &settings, &effects, view.precision, gpu.ladder()).tier;
+    let effects = Effects::requested(&scene.viewed(&settings), &view.effects);
+    let select = |gpu: &Gpu| Selection::of(&scene.viewed(&settings), &effects, view.precision, gpu.ladder()).tier;
     let backend = gpu.map_or(Backend::Reference, |gpu| Backend::Device(gpu, select(gpu)));
-    render_picture(&mut Engine::new(backend, &scene, &settings, &effects).unwrap()).unwrap().0
+    render_picture(&mut Engine::new(backend, scene.viewed(&settings), &effects).unwrap()).unwrap().0
 }
 
 #[test]

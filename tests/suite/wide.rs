@@ -28,9 +28,9 @@ fn pictures_of_very_many_columns_or_rows_are_those_of_the_reference() {
     let settings = Settings::exact();
     for (width, height) in [(600_000, 1), (1, 600_000), (2_000_000, 1), (524_296, 1)] {
         let scene = at_the_end(width, height);
-        let effects = Effects::of(&scene, &settings);
+        let effects = Effects::of(&scene.viewed(&settings));
         let (expected, _) = cpu_picture::<f64>(&scene, &settings, &effects);
-        let reference = Reference::new(&scene, &settings, &effects);
+        let reference = Reference::new(&scene.viewed(&settings), &effects);
         let seen = expected.pixels().iter().filter(|pixel| **pixel != BACKGROUND).count();
         assert!(seen > 10_000, "{width}x{height}: {seen}");
         for tier in Tier::ALL.into_iter().filter(|&tier| gpu.kernel(tier).is_ok()) {
@@ -59,8 +59,8 @@ fn the_last_places_of_the_greatest_pictures_are_rendered() {
     let settings = Settings::exact();
     for (width, height) in [(MOST, 1), (1, MOST), (3000, MOST)] {
         let scene = at_the_end(width, height);
-        let effects = Effects::of(&scene, &settings);
-        let reference = Reference::<f64>::new(&scene, &settings, &effects);
+        let effects = Effects::of(&scene.viewed(&settings));
+        let reference = Reference::<f64>::new(&scene.viewed(&settings), &effects);
         for tier in [Tier::Fast, Tier::Double].into_iter().filter(|&tier| gpu.kernel(tier).is_ok()) {
             let (case, backend) = (format!("{width}x{height}, {tier}"), Backend::Device(&gpu, tier));
             let at = |size: u32, part: f64| (f64::from(size - 1) * part) as u32;
@@ -70,7 +70,7 @@ fn the_last_places_of_the_greatest_pictures_are_rendered() {
                 [at(width, x), at(height, y)]
             };
             let pixels: Vec<_> = (0..100).map(pixel).collect();
-            let mut list = Engine::with(backend, &scene, &settings, &effects, &Options::default()).unwrap();
+            let mut list = Engine::with(backend, scene.viewed(&settings), &effects, &Options::default()).unwrap();
             let [mut colors, mut expected] = [0, 0].map(|_| vec![[0; 3]; pixels.len()]);
             list.pixels(&pixels, &mut colors).unwrap();
             reference.pixels(&pixels, &mut expected).unwrap();
@@ -80,7 +80,7 @@ fn the_last_places_of_the_greatest_pictures_are_rendered() {
             let count = 13;
             if width < height {
                 let [mut rgb, mut expected] = [0, 0].map(|_| vec![0; 3 * width as usize * count as usize]);
-                let mut rows = Engine::new(backend, &scene, &settings, &effects).unwrap();
+                let mut rows = Engine::new(backend, scene.viewed(&settings), &effects).unwrap();
                 rows.rows(height - count, &mut rgb).unwrap();
                 reference.rows(height - count, &mut expected).unwrap();
                 assert!(is_near(&rgb, &expected), "{case}");

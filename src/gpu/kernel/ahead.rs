@@ -5,11 +5,9 @@ use super::spirv::Parsed;
 use super::variant::{Kernel, Tables, Variant};
 use crate::accel::Acceleration;
 use crate::effects::Effects;
-use crate::geometry::in_range;
 use crate::precision::{Request, Selection, Tier};
-use crate::scene::Scene;
-use crate::settings::Settings;
 use crate::tuning::{Class, Tuning};
+use crate::viewed::ViewedScene;
 
 /// Software devices calculate in `f64` at little more than the price of `f32`, far below that of error-free transforms; hardware
 /// has few `f64` units.
@@ -28,17 +26,16 @@ pub struct Ahead {
 
 impl Ahead {
     /// For a software device with the tuning of its class. Where there are graphics cards, drivers take far longer than this saves.
-    pub fn of(scene: &Scene, settings: &Settings, effects: &Effects, request: Request) -> Option<Self> {
-        if scene.spheres.len() > MAX_SPHERES {
+    pub fn of(viewed: &ViewedScene, effects: &Effects, request: Request) -> Option<Self> {
+        if viewed.scene().spheres.len() > MAX_SPHERES {
             return None;
         }
         let tuning = Tuning::of(Class::Software);
-        let selection = Selection::of(scene, settings, effects, request, &SOFTWARE_LADDER);
+        let selection = Selection::of(viewed, effects, request, &SOFTWARE_LADDER);
         let kernel = Kernel::Tier(selection.tier);
-        let (scene, settings) = in_range(scene, settings);
-        let grid = Acceleration::grid_of(&scene, effects.set, kernel.rounding(), &tuning.density);
-        let specialisation = Specialisation::new(&scene, &settings, effects, kernel, &tuning, Tables::Stored)
-            .with_grid(grid.as_ref(), &tuning);
+        let grid = Acceleration::grid_of(viewed, effects.set, kernel.rounding(), &tuning.density);
+        let specialisation =
+            Specialisation::new(viewed, effects, kernel, &tuning, Tables::Stored).with_grid(grid.as_ref(), &tuning);
         let module = Parsed::new(&specialisation.module()).ok()?;
         Some(Self { variant: specialisation.variant(), module })
     }

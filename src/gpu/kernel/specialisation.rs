@@ -8,9 +8,9 @@ use super::variant::{Kernel, Places, Slots, Storage, Tables, Variant, Walk};
 use crate::accel::Grid;
 use crate::effects::{Effect, EffectSet, Effects};
 use crate::gpu::shared::{UNIFORM, dispatch_tiles};
-use crate::scene::Scene;
-use crate::settings::{Settings, Specular};
+use crate::settings::Specular;
 use crate::tuning::Tuning;
+use crate::viewed::ViewedScene;
 
 /// What a pipeline is specialised for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -48,15 +48,9 @@ pub struct Specialisation {
 }
 
 impl Specialisation {
-    /// For `scene` with `effects` under `settings`, on a device with this tuning and these tables.
-    pub fn new(
-        scene: &Scene,
-        settings: &Settings,
-        effects: &Effects,
-        kernel: Kernel,
-        tuning: &Tuning,
-        tables: Tables,
-    ) -> Self {
+    /// For `viewed` with `effects`, on a device with this tuning and these tables.
+    pub fn new(viewed: &ViewedScene, effects: &Effects, kernel: Kernel, tuning: &Tuning, tables: Tables) -> Self {
+        let (scene, settings) = (viewed.scene(), viewed.settings());
         Self {
             kernel,
             effects: effects.set,

@@ -2,7 +2,6 @@
 
 use super::compute::Job;
 use crate::accel::Acceleration;
-use crate::camera::Camera;
 use crate::effects::{EffectSet, Effects};
 use crate::gpu::device::error::Error;
 use crate::gpu::facade::Gpu;
@@ -10,31 +9,25 @@ use crate::gpu::kernel::module::Module;
 use crate::gpu::kernel::variant::Kernel;
 use crate::gpu::table::pack::Packed;
 use crate::misuse::{Misuse, check_picture};
-use crate::scene::Scene;
-use crate::settings::Settings;
+use crate::viewed::ViewedScene;
 
 /// Values before the spheres, of each sphere, of each light, and after the lights.
 const COUNTS: [usize; 4] = [31, 19, 6, 6];
 
-/// Packs `scene` and lets the device write back every field in the order of `shaders/echo.wgsl`: numbers as the bits of
+/// Packs `viewed` and lets the device write back every field in the order of `shaders/echo.wgsl`: numbers as the bits of
 /// their nearest `f32`.
 ///
 /// # Errors
 ///
 /// [`Misuse::Picture`] where the scene is not one of two spheres with all effects, the only one that the kernel reads.
-pub fn echo_layout(
-    gpu: &Gpu,
-    scene: &Scene,
-    settings: &Settings,
-    effects: &Effects,
-    kernel: Kernel,
-) -> Result<Vec<u32>, Error> {
-    check_picture(scene, settings)?;
+pub fn echo_layout(gpu: &Gpu, viewed: &ViewedScene, effects: &Effects, kernel: Kernel) -> Result<Vec<u32>, Error> {
+    check_picture(viewed)?;
+    let scene = viewed.scene();
     if scene.spheres.len() != 2 || effects.set != EffectSet::ALL {
         return Err(Misuse::Picture("only two spheres with all effects are echoed".into()).into());
     }
-    let accel = Acceleration::new(scene, &Camera::new(scene, settings), effects.set, kernel.rounding());
-    let packed = Packed::new(scene, settings, effects, kernel, &accel, None, 0.25);
+    let accel = Acceleration::new(viewed, effects.set, kernel.rounding());
+    let packed = Packed::new(viewed, effects, kernel, &accel, None, 0.25);
     let [head, sphere, light, tail] = COUNTS;
     let job = Job {
         what: "echoing the layout",

@@ -13,9 +13,9 @@ use crate::geometry::{Ellipsoid, ellipsoid};
 use crate::gpu::device::contents::Contents;
 use crate::gpu::kernel::specialisation::material_vectors;
 use crate::gpu::kernel::variant::Kernel;
-use crate::scene::{Light, Scene};
-use crate::settings::Settings;
+use crate::scene::Light;
 use crate::tiles::TILE;
+use crate::viewed::ViewedScene;
 
 /// The contents of the tables but the lists.
 pub(crate) struct Packed<'a> {
@@ -38,11 +38,10 @@ pub(crate) struct Packed<'a> {
 }
 
 impl<'a> Packed<'a> {
-    /// Packs `scene` for a pipeline that simulates `effects` with `kernel`; `indices` are those of its surfaces, where spheres
+    /// Packs `viewed` for a pipeline that simulates `effects` with `kernel`; `indices` are those of its surfaces, where spheres
     /// share some.
     pub(crate) fn new(
-        scene: &'a Scene,
-        settings: &Settings,
+        viewed: &'a ViewedScene,
         effects: &Effects,
         kernel: Kernel,
         accel: &Acceleration,
@@ -50,16 +49,15 @@ impl<'a> Packed<'a> {
         tangent_margin: f64,
     ) -> Self {
         if kernel.is_double() {
-            pack::<double::Layout>(scene, settings, effects, false, accel, indices, tangent_margin)
+            pack::<double::Layout>(viewed, effects, false, accel, indices, tangent_margin)
         } else {
-            pack::<single::Layout>(scene, settings, effects, kernel.carries_low(), accel, indices, tangent_margin)
+            pack::<single::Layout>(viewed, effects, kernel.carries_low(), accel, indices, tangent_margin)
         }
     }
 }
 
 fn pack<'a, L: Layout + 'a>(
-    scene: &'a Scene,
-    settings: &Settings,
+    viewed: &'a ViewedScene,
     effects: &Effects,
     with_low: bool,
     accel: &Acceleration,
@@ -67,7 +65,7 @@ fn pack<'a, L: Layout + 'a>(
     tangent_margin: f64,
 ) -> Packed<'a> {
     let on = |effect| effects.set.has(effect);
-    let camera = Camera::new(scene, settings);
+    let (scene, settings, camera) = (viewed.scene(), viewed.settings(), Camera::new(viewed));
     let true_axes = on(Effect::Ellipsoids);
     let indices = Arc::new(indices);
     let shape = move |i: usize| {

@@ -31,7 +31,7 @@ pub(super) fn coarse_engine<'g, O: Output>(
             scene.window.bottom = end(window.top, window.bottom, height, size.1);
         }
         (scene.width, scene.height) = (width, height);
-        Ok((Engine::with(backend, scene, settings, effects, options)?, (width, height)))
+        Ok((Engine::with(backend, scene.viewed(settings), effects, options)?, (width, height)))
     })
 }
 

@@ -53,7 +53,7 @@ impl SessionRenderer<'_> {
             let start = (y as usize * width as usize + x as usize) * 3;
             [rgb[start], rgb[start + 1], rgb[start + 2]]
         });
-        let hit = with_size(context.scene, job.size, |scene| picked(scene, &job.settings, x, y));
+        let hit = with_size(context.scene, job.size, |scene| picked(&scene.viewed(&job.settings), x, y));
         let names = &context.scene.sphere_names;
         let hit = hit.map(|hit| PickedHit {
             sphere: hit.sphere,

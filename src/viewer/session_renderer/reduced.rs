@@ -44,14 +44,16 @@ impl<'g> SessionRenderer<'g> {
         let settings = Settings { samples_per_side: 1, ..view.settings() };
         let size = fitted(view.size(context.scene), context.pixels);
         let mut part = largest(context.scene, &settings, REDUCED_SPHERES);
-        let effects = Effects::requested(&part, &settings, &view.effects);
-        if effects.too_deep(&part).or_else(|| limits::problem(&part, &settings, &effects)).is_some() {
+        let viewed = part.viewed(&settings);
+        let effects = Effects::requested(&viewed, &view.effects);
+        if effects.too_deep(&part).or_else(|| limits::problem(&viewed, &effects)).is_some() {
             // The whole scene says why.
             self.reduced.shown = Some((version, Instant::now()));
             return Ok(());
         }
         let ladder = self.gpu.map_or(&Tier::ALL[..], Gpu::ladder);
-        let tier = Selection::of(&part, &settings, &effects, view.precision, ladder).tier;
+        let tier = Selection::of(&viewed, &effects, view.precision, ladder).tier;
+        drop(viewed);
         let backend = Backend::of(self.gpu, tier);
         if self.canvas.size() != size {
             self.canvas = Canvas::new(size);
@@ -89,7 +91,7 @@ impl<'g> SessionRenderer<'g> {
         let start = Instant::now();
         let options = self.maps.options();
         let mut engine: Engine<Pixels> =
-            with_size(part, size, |part| Engine::with(backend, part, settings, effects, &options))?;
+            with_size(part, size, |part| Engine::with(backend, part.viewed(settings), effects, &options))?;
         let samples = map.samples.pixels();
         let mut colors = vec![[0; 3]; samples.len()];
         engine.pixels(samples, &mut colors)?;
