@@ -7,16 +7,26 @@ use crate::hash::{EMPTY, fnv1a};
 
 /// The program's own folder in the user's cache folder; `None` where there is no such place. It need not exist yet.
 pub(crate) fn folder() -> Option<PathBuf> {
-    folder_in(std::env::var_os("XDG_CACHE_HOME"), std::env::var_os("HOME"))
+    folder_in(std::env::var_os("XDG_CACHE_HOME"), usual())
 }
 
-/// With these values of the variables. A relative path, as an empty one is, would be another place in each folder where the program
-/// runs: it is none.
-fn folder_in(cache: Option<OsString>, home: Option<OsString>) -> Option<PathBuf> {
-    let cache = match cache {
-        Some(cache) => PathBuf::from(cache),
-        None => PathBuf::from(home?).join(".cache"),
-    };
+/// Where the system has such folders.
+#[cfg(windows)]
+fn usual() -> Option<PathBuf> {
+    use etcetera::BaseStrategy as _;
+    Some(etcetera::base_strategy::Windows::new().ok()?.cache_dir())
+}
+
+/// Where the system has such folders.
+#[cfg(not(windows))]
+fn usual() -> Option<PathBuf> {
+    Some(PathBuf::from(std::env::var_os("HOME")?).join(".cache"))
+}
+
+/// With this value of the variable, or else this place. A relative path, as an empty one is, would be another place in each folder
+/// where the program runs: it is none.
+fn folder_in(variable: Option<OsString>, usual: Option<PathBuf>) -> Option<PathBuf> {
+    let cache = variable.map(PathBuf::from).or(usual)?;
     cache.is_absolute().then(|| cache.join("trueray"))
 }
 
@@ -32,10 +42,11 @@ mod tests {
 
     #[test]
     fn only_absolute_folders_are_used() {
-        let folder = |cache: Option<&str>, home: Option<&str>| folder_in(cache.map(Into::into), home.map(Into::into));
+        let folder =
+            |variable: Option<&str>, usual: Option<&str>| folder_in(variable.map(Into::into), usual.map(Into::into));
         let root = if cfg!(windows) { "C:\\a" } else { "/a" };
         assert_eq!(folder(Some(root), Some("/b")), Some(PathBuf::from(root).join("trueray")));
-        assert_eq!(folder(None, Some(root)), Some(PathBuf::from(root).join(".cache").join("trueray")));
+        assert_eq!(folder(None, Some(root)), Some(PathBuf::from(root).join("trueray")));
         for none in [(None, None), (None, Some("")), (None, Some("b")), (Some(""), Some(root)), (Some("c"), Some(root))]
         {
             assert_eq!(folder(none.0, none.1), None, "{none:?}");

@@ -32,6 +32,9 @@
 //! # }
 //! ```
 //!
+//! To depend on it: `trueray = { path = "…", default-features = false }`; the default feature `view` is the command line's live
+//! view and brings a web server. Build with `--release`: without optimisation pictures take many times as long.
+//!
 //! Two pictures are compared by [`Difference::between`]. The folder `examples` has whole programs. What the documentation does not
 //! show is the program's own and may change.
 

@@ -57,10 +57,11 @@ fn print(args: &Args) -> Result<(), Failure> {
     };
     let entry = chosen(args.entry.as_deref(), &kernels)?;
     let comment = if args.spirv { ";" } else { "//" };
-    let names = kernels.entry_points().join(", ");
+    let names = kernels.entry_points();
+    let which = if names.len() == 1 { "the kernel".into() } else { format!("one of the kernels {}", names.join(", ")) };
     let text = if args.spirv { kernels.disassembly(entry).map_err(Error::Shader)? } else { kernels.listing(entry) };
     out!(
-        "{comment} {entry}, one of the kernels {names} of {} at {tier} on {}\n{text}",
+        "{comment} {entry}, {which} of {} at {tier} on {}\n{text}",
         visible(&loaded.name),
         visible(&gpu.device.info.to_string())
     );

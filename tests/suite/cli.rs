@@ -497,7 +497,7 @@ fn the_shader_of_a_scene_can_be_read() {
         module.entry_points.into_iter().map(|entry| entry.name).collect::<Vec<_>>()
     };
     let text = printed("");
-    assert!(text.starts_with("// see_tiles, one of the kernels see_tiles of scene.txt at "), "{text}");
+    assert!(text.starts_with("// see_tiles, the kernel of scene.txt at "), "{text}");
     assert!(text.contains("\n// ==== shaders/slots_tiles.wgsl, slot `slots` ====\n"), "{text}");
     // The scene has one sphere, ambient light alone and no mirror.
     assert!(text.contains("// AMBIENT = 1\n// DIFFUSE = 0\n"), "{text}");
@@ -510,7 +510,7 @@ fn the_shader_of_a_scene_can_be_read() {
     assert!(printed("--precision robust").contains("shaders/kernel_robust.wgsl"));
 
     let text = printed("--spirv");
-    assert!(text.starts_with("; see_tiles, one of the kernels see_tiles of scene.txt at "), "{text}");
+    assert!(text.starts_with("; see_tiles, the kernel of scene.txt at "), "{text}");
     assert!(text.contains("OpEntryPoint GLCompute") && text.contains("NoContraction"), "{text}");
     assert!(!text.contains("OpFunctionCall"), "{text}");
 }

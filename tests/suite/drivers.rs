@@ -47,7 +47,7 @@ fn compiled_kernels_are_kept_and_a_damaged_file_is_told_and_replaced() {
     let Some(gpu) = crate::support::gpu("compiled_kernels_are_kept_and_a_damaged_file_is_told_and_replaced") else {
         return;
     };
-    let index = gpu.device.info.index;
+    let (index, grows) = (gpu.device.info.index, gpu.device.info.driver.contains("SwiftShader"));
     drop(gpu);
     let folder = tempfile::tempdir().unwrap();
     let scene =
@@ -74,7 +74,8 @@ fn compiled_kernels_are_kept_and_a_damaged_file_is_told_and_replaced() {
     let kept = std::fs::read(file).unwrap();
     let (picture, errors) = run("1");
     assert!(picture == expected && !errors.contains("are not used"), "{errors}");
-    assert_eq!(std::fs::read(file).unwrap(), kept);
+    // SwiftShader's grows at each run.
+    assert_eq!(std::fs::read(file).unwrap() != kept, grows);
 
     let mut damaged = kept.clone();
     *damaged.last_mut().unwrap() ^= 1;

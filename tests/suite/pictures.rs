@@ -8,7 +8,7 @@ use trueray::effects::{Effect, EffectSet, Effects, Request};
 use trueray::engine::{Backend, Engine, render_bands};
 use trueray::film::Picture;
 use trueray::gpu;
-use trueray::gpu::{Ahead, Choice, DeviceKind, Gpu, GpuRenderer};
+use trueray::gpu::{Ahead, Choice, Gpu, GpuRenderer, Tables};
 use trueray::precision::{self, Demand, Selection, Tier};
 use trueray::settings::{Settings, Specular};
 use trueray::tuning::{Class, Tuning};
@@ -212,7 +212,7 @@ fn auto_picks_a_tier_that_covers_the_scene() {
 fn kernels_are_parsed_ahead_for_the_picture_that_follows() {
     let Some(own) = gpu("kernels_are_parsed_ahead_for_the_picture_that_follows") else { return };
     let (settings, software) = (Settings::classic(), Tuning::of(Class::Software));
-    let is_expected = own.device.info.kind == DeviceKind::Software && own.tuned().tuning == software;
+    let is_expected = own.tables() == Tables::Stored && own.tuned().tuning == software;
     let ahead_of = |scene: &trueray::scene::Scene| {
         Ahead::of(&scene.viewed(&settings), &Effects::of(&scene.viewed(&settings)), precision::Request(None))
     };
