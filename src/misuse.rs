@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::scene::MAX_RESOLUTION;
-use crate::settings::Settings;
+use crate::settings::{Secondary, Settings};
 use crate::viewed::ViewedScene;
 
 /// What is asked for makes no sense.
@@ -76,6 +76,12 @@ pub(crate) fn check_picture(viewed: &ViewedScene) -> Result<(), Misuse> {
         ("samples", settings.samples_per_side, 1..=Settings::MAX_SAMPLES_PER_SIDE),
         ("max_depth", settings.max_depth, 0..=Settings::MAX_DEPTH),
     ];
+    let Secondary { shadow, reflection } = settings.secondary;
+    if !(0.0..1.0).contains(&shadow) || !(reflection >= 0.0) {
+        return Err(Misuse::Picture(format!(
+            "rays cannot begin at {shadow} of the way to a light and at a distance of {reflection}"
+        )));
+    }
     match numbers.into_iter().find(|(_, number, range)| !range.contains(number)) {
         None => Ok(()),
         Some((name, number, range)) => {

@@ -83,6 +83,8 @@ pub struct Promise {
     pub axis_ratio: f64,
     /// Greatest specular exponent.
     pub exponent: f64,
+    /// Greatest index of refraction, or reciprocal of one, of what one looks through.
+    pub bending: f64,
     /// Greatest coordinate of a sphere or of a light that casts shadows, seen from the eye, in least semi-axes of any sphere: squares
     /// of it stay within the range of the tier's numbers.
     pub reach: f64,
@@ -102,6 +104,7 @@ impl Tier {
                 nearness: 1e-6,
                 axis_ratio: 1e4,
                 exponent: 1e6,
+                bending: 30.0,
                 reach: 1e15,
                 brightness: Scalar::Single.max_brightness(),
             },
@@ -110,6 +113,7 @@ impl Tier {
                 nearness: 2e-8,
                 axis_ratio: 1e5,
                 exponent: 1e6,
+                bending: 30.0,
                 reach: 1e15,
                 brightness: Scalar::Single.max_brightness(),
             },
@@ -118,6 +122,7 @@ impl Tier {
                 nearness: 1e-12,
                 axis_ratio: 1e6,
                 exponent: 1e12,
+                bending: f64::INFINITY,
                 reach: f64::INFINITY,
                 brightness: Scalar::Double.max_brightness(),
             },
@@ -136,6 +141,8 @@ pub struct Demand {
     pub axis_ratio: Extreme,
     /// Greatest specular exponent.
     pub exponent: Extreme,
+    /// Greatest index of refraction, or reciprocal of one, of what one looks through.
+    pub bending: Extreme,
     /// Greatest coordinate of a sphere or of a light that casts shadows, in least semi-axes of any sphere.
     pub reach: Extreme,
     /// Greatest [`Brightness`], with the sphere that makes it so.
@@ -198,6 +205,7 @@ impl Demand {
             nearness: Extreme { value: f64::INFINITY, sphere: None },
             axis_ratio: least,
             exponent: least,
+            bending: least,
             reach: least,
             brightness: least,
         }
@@ -212,6 +220,9 @@ impl Demand {
         self.reach.raise(reach / short, index);
         if effects.set.has(Effect::Specular) && sphere.ks != 0.0 {
             self.exponent.raise(sphere.n, index);
+        }
+        if effects.set.has(Effect::Refraction) && sphere.kt != 0.0 {
+            self.bending.raise(sphere.eta.max(1.0 / sphere.eta), index);
         }
         let mut add_nearness = |origin: DVec3| {
             let from_center = origin - sphere.center;
@@ -239,6 +250,7 @@ impl Demand {
         };
         greater(&mut self.axis_ratio, other.axis_ratio);
         greater(&mut self.exponent, other.exponent);
+        greater(&mut self.bending, other.bending);
         greater(&mut self.reach, other.reach);
         if let Some(sphere) = other.nearness.sphere {
             self.nearness.lower(other.nearness.value, sphere);
@@ -270,6 +282,7 @@ impl Demand {
         below("nearness of the eye or a light to the surface", &self.nearness, promise.nearness)
             .or_else(|| above("axis ratio", &self.axis_ratio, promise.axis_ratio))
             .or_else(|| above("specular exponent", &self.exponent, promise.exponent))
+            .or_else(|| above("index of refraction", &self.bending, promise.bending))
             .or_else(|| above("greatest coordinate over radius", &self.reach, promise.reach))
             .or_else(|| above("brightness", &self.brightness, promise.brightness))
             .or_else(|| too_many.then(pixels))
@@ -277,18 +290,19 @@ impl Demand {
 
     /// The demands, a line.
     pub fn summary(&self) -> String {
-        let Self { share, nearness, axis_ratio, exponent, reach, brightness } = self;
+        let Self { share, nearness, axis_ratio, exponent, bending, reach, brightness } = self;
         // Of no spheres there is no extreme.
         let one = |extreme: &Extreme| {
             if extreme.value.is_finite() { format!("{:.3e}", extreme.value) } else { "none".into() }
         };
         let shares = Tier::ALL.map(|tier| format!("{:.1e} at {tier}", share[tier as usize].value));
         format!(
-            "share of pixels changed by rounding about {}, nearness {}, axis ratio {}, exponent {}, distance/radius {}, brightness {}",
+            "share of pixels changed by rounding about {}, nearness {}, axis ratio {}, exponent {}, index of refraction {}, distance/radius {}, brightness {}",
             shares.join(", "),
             one(nearness),
             one(axis_ratio),
             exponent.value,
+            bending.value,
             one(reach),
             one(brightness)
         )

@@ -140,9 +140,17 @@ impl Renderer {
     }
 }
 
+/// Whether a picture of this size fits into memory.
+fn check_room(scene: &Scene) -> Result<(), Error> {
+    let size = scene.width as usize * scene.height as usize * 3;
+    let too_large = |_| Error::Unrenderable(format!("a picture of {size} bytes does not fit into memory"));
+    Vec::<u8>::new().try_reserve_exact(size).map_err(too_large)
+}
+
 /// A scene that has a picture, as its eye sees it, and its effects.
 fn renderable<'a>(scene: &'a Scene, settings: &Settings) -> Result<(ViewedScene<'a>, Effects), Error> {
     scene.check()?;
+    check_room(scene)?;
     let viewed = scene.viewed(settings);
     let effects = Effects::of(&viewed);
     match effects.too_deep(scene).or_else(|| limits::problem(&viewed, &effects)) {

@@ -16,6 +16,7 @@ use crate::report::{Skipped, Timings};
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::viewed::ViewedScene;
+use crate::words::count;
 
 /// By how much a forecast has to exceed the budget before a scene is not even tried.
 const DOUBT: f64 = 2.0;
@@ -298,7 +299,11 @@ fn measure_scene(
         let (budget, runs) = (plan.seconds, plan.runs);
         let all_runs = |ms: f64| ms * runs as f64 / 1e3;
         if let Some(ms) = forecast.of(size).filter(|ms| all_runs(*ms) > DOUBT * budget) {
-            skip(format!("{runs} runs would take about {}, the budget is {budget} s", time(ms * runs as f64)));
+            skip(format!(
+                "{} would take about {}, the budget is {budget} s",
+                count(runs as u64, "run"),
+                time(ms * runs as f64)
+            ));
             continue;
         }
         let backend = match (forecast.renderer, setup.gpu) {
@@ -330,7 +335,11 @@ fn measure_scene(
         };
         forecast.points.push((size as f64, ms));
         if all_runs(ms) > budget {
-            skip(format!("one picture took {}, so {runs} runs would exceed the budget of {budget} s", time(ms)));
+            skip(format!(
+                "one picture took {}, so {} would exceed the budget of {budget} s",
+                time(ms),
+                count(runs as u64, "run")
+            ));
             continue;
         }
         contestant.reset();

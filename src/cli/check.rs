@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::failure::{Failure, OK, OUTPUT, SCENE};
 use super::input::{Input, print_doubts};
-use super::named::check_named;
+use super::named::{check_named, format_by_ending};
 use super::options::PictureOptions;
 use super::output::{out, outln};
 use super::render::{explanation, precision_explanation};
@@ -148,7 +148,8 @@ impl Contents {
 
 /// What `render` would say of the file that OUTPUT names, run in this folder.
 fn named_doubt(scene: &Scene) -> Option<String> {
-    let refused = check_named(Path::new(scene.output.as_ref()?)).err()?;
+    let path = Path::new(scene.output.as_ref()?);
+    let refused = check_named(path).and_then(|()| format_by_ending(path).map(drop)).err()?;
     Some(format!("without -o there is no picture: {}", refused.message.lines().next()?))
 }
 

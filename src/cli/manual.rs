@@ -6,6 +6,7 @@ use clap_mangen::Man;
 
 use super::failure::{Failure, OK, OUTPUT, USAGE};
 use super::output::out;
+use crate::words::visible;
 
 /// Arguments of `trueray completions`.
 #[derive(Debug, clap::Args)]
@@ -45,9 +46,9 @@ fn page(args: &ManArgs, mut cli: Command) -> Result<String, Failure> {
     cli.build();
     let command = match &args.command {
         None => &cli,
-        Some(name) => cli
-            .find_subcommand(name)
-            .ok_or_else(|| Failure::new(USAGE, format!("there is no command `{name}`; `trueray --help` lists them")))?,
+        Some(name) => cli.find_subcommand(name).ok_or_else(|| {
+            Failure::new(USAGE, format!("there is no command `{}`; `trueray --help` lists them", visible(name)))
+        })?,
     };
     let mut page = Vec::new();
     Man::new(command.clone()).render(&mut page).map_err(|error| Failure::new(OUTPUT, error.to_string()))?;

@@ -116,7 +116,9 @@ pub fn run() -> ExitCode {
     if let Err(error) = signals::watch() {
         output::errln!("trueray: signals are not watched, an interrupt may leave temporary files: {error}");
     }
-    if let Err(failure) = watchdog::watch() {
+    // compare has one code for every trouble.
+    let lost = if matches!(cli.command, Some(Command::Compare(_))) { failure::USAGE } else { failure::DEVICE_LOST };
+    if let Err(failure) = watchdog::watch(lost) {
         return failure.report().into();
     }
     let code = match cli.command {

@@ -24,11 +24,11 @@ impl Study {
             let _ = writeln!(text, "not measured: {}: {}", skipped.name, skipped.reason);
         }
         for (title, series) in self.titled() {
-            let _ = write!(text, "\n{title}, {} runs\n{}", series.runs, series.report());
+            let _ = write!(text, "\n{title}, {}\n{}", count(series.runs as u64, "run"), series.report());
         }
         if !self.partial.points.is_empty() {
             let title = "Samples of a part of the pixels; error in levels against the full picture";
-            let _ = write!(text, "\n{title}, {} runs\n{}", self.partial.runs, self.partial.report());
+            let _ = write!(text, "\n{title}, {}\n{}", count(self.partial.runs as u64, "run"), self.partial.report());
         }
         let _ = write!(text, "\nWhat each effect costs ({})\n{}", self.effects_on(), self.effect_cost.report());
         text

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use trueray::errors::Invalid;
+use trueray::settings::Secondary;
 use trueray::{DVec3, Difference, Error, Light, Picture, Renderer, Scene, Settings, Sphere, Tier, Verify, Window};
 
 use crate::support::{gpu, root, say_skipped};
@@ -75,6 +76,13 @@ fn numbers_that_no_file_may_have_are_refused() {
     far.spheres[0].center.x = 1e300;
     far.spheres[1].scale.x = 1e-300;
     assert!(matches!(Renderer::reference().render(&far, &Settings::default()), Err(Error::Unrenderable(_))));
+    let vast = Scene::new(Window::default(), 1 << 24, 1 << 24);
+    assert!(matches!(Renderer::reference().render(&vast, &Settings::default()), Err(Error::Unrenderable(_))));
+    for (shadow, reflection) in [(-1.0, 0.0), (1.0, 0.0), (f64::NAN, 0.0), (0.0, -1.0), (0.0, f64::NAN)] {
+        let settings = Settings { secondary: Secondary { shadow, reflection }, ..Settings::default() };
+        let error = Renderer::reference().render(&scene(), &settings).unwrap_err().to_string();
+        assert!(error.starts_with("rays cannot begin at "), "{error}");
+    }
     let depth = Settings { max_depth: u32::MAX, ..Settings::default() };
     assert!(matches!(Renderer::reference().render(&scene(), &depth), Err(Error::Device(_))));
 }

@@ -436,6 +436,40 @@ fn colours_beyond_single_precision_take_double() {
     }
 }
 
+/// 0 to the power of 0 is 1, and to that of the least number 0: it stays a number at every tier.
+#[test]
+fn the_least_exponent_is_none_of_zero() {
+    let shared = keeping_gpu("the_least_exponent_is_none_of_zero");
+    let text = |n: &str| {
+        format!("SPHERE a 0 0 -5 1 1 1 1 1 1 0.2 0.2 0.6 0 {n}\nLIGHT l 4 4 0 1 1 1\nAMBIENT 0.2 0.2 0.2\nBACK 0 0 0")
+    };
+    let settings = Settings::classic();
+    for (n, same) in [("1e-60", "1e-30"), ("1e-320", "1e-30"), ("0", "0.0")] {
+        let [scene, other] = [n, same].map(|n| scene_of(&text(n)));
+        let expected = cpu(&scene, &settings, Rounding::DOUBLE);
+        assert_eq!(differing(&expected, &cpu(&other, &settings, Rounding::DOUBLE)), 0, "{n}");
+        let Some(gpu) = &shared else { continue };
+        for kernel in kernels(gpu) {
+            let [picture, other] =
+                [&scene, &other].map(|scene| device(gpu, kernel, scene, &settings, kernel.rounding()).unwrap());
+            assert_eq!(differing(&picture, &other), 0, "{n}, {kernel:?}");
+            assert!(differing(&picture, &expected) < 4, "{n}, {kernel:?}");
+        }
+    }
+}
+
+/// Rounding of directions is enlarged by as much as rays are bent.
+#[test]
+fn strong_refraction_takes_double() {
+    for (eta, tier) in [("1.5", Tier::Fast), ("0.75", Tier::Fast), ("300", Tier::Double), ("0.001", Tier::Double)] {
+        let scene = scene_of(&format!("SPHERE a 0 0 -5 1 1 1 1 1 1 0.2 0.2 0 0 1 0.8 {eta}\nAMBIENT 1 1 1"));
+        let viewed = scene.viewed(&Settings::classic());
+        let request = precision::Request(None);
+        let selection = Selection::of(&viewed, &Effects::of(&viewed), request, &Tier::ALL);
+        assert_eq!(selection.tier, tier, "{eta}: {}", selection.reason);
+    }
+}
+
 /// Where even `f64` leaves its range there is a reason instead of a picture.
 #[test]
 fn what_f64_cannot_hold_is_refused() {

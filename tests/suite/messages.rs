@@ -142,6 +142,9 @@ fn check_doubts_a_name_that_render_refuses() {
     let why = "OUTPUT would write `.hidden.ppm`, a hidden file";
     assert_exit(&place.run("check scene.txt"), 0, &format!("warning: without -o there is no picture: {why}\n"));
     assert_exit(&place.run("render --device cpu scene.txt"), 6, why);
+    std::fs::write(place.path().join("scene.txt"), SCENE.replace("out.ppm", "out.jpg")).unwrap();
+    let why = "warning: without -o there is no picture: out.jpg: pictures are written as .ppm or .png";
+    assert_exit(&place.run("check scene.txt"), 0, why);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use std::str::FromStr;
 
+use super::calls::Call;
 use super::diagnosis::hidden;
 use super::drivers::is_device_chosen;
 use super::error::Error;
@@ -62,6 +63,7 @@ fn adapters() -> Result<(wgpu::Instance, Adapters), Error> {
     {
         return Err(Error::NotFound("WGPU_BACKEND leaves out Vulkan, the only backend of this program".into()));
     }
+    let _call = Call::begin();
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends: wgpu::Backends::VULKAN,
         flags: wgpu::InstanceFlags::empty().with_env(),

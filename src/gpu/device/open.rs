@@ -63,6 +63,7 @@ impl Device {
         let offer = Offer::of(&adapter).masked(mask);
         let info = DeviceInfo::new(info.index, adapter.get_info(), &offer);
         let opened = info.clone();
+        let _call = Call::begin();
         guarded(|| Self::open_adapter(opened, &adapter, offer)).unwrap_or_else(|why| Err(does_not_open(&info, &why)))
     }
 
@@ -112,7 +113,9 @@ impl Device {
 
     /// Runs `action` and turns what the device reported meanwhile into an error.
     pub(crate) fn checked<T>(&self, what: &str, action: impl FnOnce() -> T) -> Result<T, Error> {
+        let call = Call::begin();
         let value = action();
+        drop(call);
         match self.failure.lock().unwrap_or_else(PoisonError::into_inner).take() {
             None => Ok(value),
             Some(Failure::Limit(why)) => Err(Error::too_large(&self.info, what, why)),
@@ -146,10 +149,7 @@ impl Device {
         for _ in 0..patience {
             let wait =
                 wgpu::PollType::Wait { submission_index: submission.cloned(), timeout: Some(Duration::from_secs(1)) };
-            let call = Call::begin();
-            let result = self.checked("waiting for a dispatch", || self.raw.poll(wait))?;
-            drop(call);
-            match result {
+            match self.checked("waiting for a dispatch", || self.raw.poll(wait))? {
                 Ok(_) => return Ok(()),
                 Err(wgpu::PollError::Timeout) => {}
                 Err(error) => return Err(Error::Lost(format!("{} stopped answering: {error}", self.info))),

@@ -4,7 +4,6 @@ use super::bindings::Binding;
 use super::cache::KernelCache;
 use super::compiler::Compiler;
 use super::spirv::Parsed;
-use crate::gpu::device::calls::Call;
 use crate::gpu::device::error::Error;
 use crate::gpu::device::open::Device;
 
@@ -71,7 +70,6 @@ impl Stage {
                 bind_group_layouts: &[Some(&layout)],
                 immediate_size: 0,
             });
-            let _call = Call::begin();
             let pipeline = device.raw.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                 label: Some(entry_point),
                 layout: Some(&pipeline_layout),

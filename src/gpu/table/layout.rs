@@ -300,7 +300,8 @@ macro_rules! layout {
                         kd: Self::real(sphere.kd),
                         ks: Self::real(sphere.ks),
                         kr: Self::real(sphere.kr),
-                        n: Self::real(sphere.n),
+                        // 0 is another exponent than any above, all of which below this give 1.
+                        n: Self::real(if sphere.n > 0.0 { sphere.n.max(f64::from(f32::MIN_POSITIVE)) } else { 0.0 }),
                         scale: vector(scale),
                         ..Material::zeroed()
                     }
