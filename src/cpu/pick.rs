@@ -1,5 +1,7 @@
 //! What a pixel shows: the sphere that its ray meets first.
 
+use std::cell::LazyCell;
+
 use glam::DVec3;
 
 use super::intersect::{Range, Ray, primary_root};
@@ -37,7 +39,8 @@ pub fn picked(viewed: &ViewedScene, x: u32, y: u32) -> Option<PrimaryHit> {
     let sample = [x, y].map(|at| at * camera.samples_per_side() + middle);
     let direction = camera.column(sample[0]) + camera.row(sample[1]);
     let ray = Ray::<f64> { origin: Vec3::ZERO, direction: Vec3::from_f64(direction) };
-    let exact = ExactCamera::new(viewed);
+    // Few rays come so near to a tangent.
+    let exact = LazyCell::new(|| ExactCamera::new(viewed));
     let mut range = Range { t_min: camera.t_min(), t_max: f64::INFINITY, greater: true };
     let margin = TangentMargin::new(viewed, f64::ROUNDING.tests);
     let mut nearest = None;
