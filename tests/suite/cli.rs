@@ -404,10 +404,16 @@ fn scenes_beyond_the_range_of_numbers_are_refused() {
     }
     let place = Folder::new(&bright);
     assert_exit(&place.run("render scene.txt --device cpu -o c.ppm"), 0, "");
-    if gpu("scenes_beyond_the_range_of_numbers_are_refused").is_some() {
+    if let Some(gpu) = gpu("scenes_beyond_the_range_of_numbers_are_refused") {
         assert_exit(&place.run("render scene.txt --precision fast -o f.ppm"), 4, "fast cannot render this scene");
-        assert_exit(&place.run("render scene.txt --explain -o d.ppm"), 0, "brightness");
-        assert_eq!(place.files(), ["c.ppm", "d.ppm", "scene.txt"]);
+        // Pairs of f32 have no greater range than one.
+        let (code, files) = if gpu.device.info.f64 {
+            (0, &["c.ppm", "d.ppm", "scene.txt"][..])
+        } else {
+            (4, &["c.ppm", "scene.txt"][..])
+        };
+        assert_exit(&place.run("render scene.txt --explain -o d.ppm"), code, "brightness");
+        assert_eq!(place.files(), files);
     }
 }
 
@@ -474,7 +480,12 @@ fn few_threads_are_enough() {
         let output = limited(threads, "render --device cpu scene.txt").unwrap();
         assert_exit(&output, 0, "out.ppm");
         let output = limited(threads, "render scene.txt").unwrap();
-        let code = output.status.code().unwrap();
+        let Some(code) = output.status.code() else {
+            // SwiftShader aborts where it gets no thread.
+            let gpu = gpu("few_threads_are_enough").unwrap();
+            assert!(gpu.device.info.driver.contains("SwiftShader"), "{threads} threads: {output:?}");
+            continue;
+        };
         assert!(code == 0 || code == 7, "{threads} threads");
         assert_exit(&output, code, if code == 0 { "out.ppm" } else { "the system refuses threads" });
     }
