@@ -377,7 +377,11 @@ fn negative_mirrors_alternate_between_white_and_black() {
             let Some(gpu) = &shared else { continue };
             let selection = Selection::of(&scene.viewed(&settings), &effects, precision::Request(None), gpu.ladder());
             let kernel = gpu.kernel(selection.tier).unwrap();
-            let picture = device(gpu, kernel, &scene, &settings, kernel.rounding()).unwrap();
+            let Some(picture) = device(gpu, kernel, &scene, &settings, kernel.rounding()) else {
+                // Pairs of f32 have no greater range than one.
+                assert!(!gpu.device.info.f64 && kr < -1e5, "{kr}, depth {max_depth}, {}", selection.tier);
+                continue;
+            };
             assert!(picture == expected.rgb(), "{kr}, depth {max_depth}, {}", selection.tier);
         }
     }
