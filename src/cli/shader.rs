@@ -19,7 +19,7 @@ pub(super) struct Args {
     /// The kernel, by its entry point; without it the one that casts the primary rays
     #[arg(long, value_name = "NAME", help_heading = "Output")]
     entry: Option<String>,
-    /// Print the SPIR-V that the driver gets, disassembled, with the bindings' numbers of the WGSL
+    /// Print the SPIR-V that the driver gets, disassembled; the WGSL's bindings are numbered anew there, in their order
     #[arg(long, help_heading = "Output")]
     spirv: bool,
     #[command(flatten)]

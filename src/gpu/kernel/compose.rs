@@ -30,8 +30,8 @@ files! {
     "kernel_plain" "kernel_robust" "kernel_schoolbook" "path_in_place" "path_kept" "path_tree" "probe" "quantize" "ray_plain"
     "ray_robust" "real_f32" "real_f64" "reflect" "refract" "resolve" "roots_pair" "roots_single" "scene_ranges" "scene_tables"
     "search_all" "search_lists" "secondary_both" "secondary_grid" "secondary_large" "see" "selftest" "shade" "slots_list"
-    "slots_tiles" "stage" "tables_buffers" "tables_textures" "texels" "texture_sampled" "texture_stored" "types" "vectors_f32" "vectors_f64" "walk_at_once"
-    "walk_in_turn"
+    "slots_tiles" "stage" "tables_buffers" "tables_textures" "texels" "texture_sampled" "texture_stored" "types" "vectors_f32"
+    "vectors_f64" "walk_at_once" "walk_in_turn"
 }
 
 /// One file of `shaders/`, or what the host declares.

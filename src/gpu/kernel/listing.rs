@@ -56,7 +56,7 @@ impl Specialisation {
         text + &self.module_of(entry_point).listing()
     }
 
-    /// The SPIR-V of an entry point, disassembled; bindings are numbered as in the WGSL.
+    /// The SPIR-V of an entry point, disassembled; the bindings of the WGSL are numbered anew, in their order.
     ///
     /// # Errors
     ///
