@@ -508,20 +508,20 @@ fn the_shader_of_a_scene_can_be_read() {
         module.entry_points.into_iter().map(|entry| entry.name).collect::<Vec<_>>()
     };
     let text = printed("");
-    assert!(text.starts_with("// see_tiles, the kernel of scene.txt at "), "{text}");
+    assert!(text.starts_with("// trace_tiles, the kernel of scene.txt at "), "{text}");
     assert!(text.contains("\n// ==== shaders/slots_tiles.wgsl, slot `slots` ====\n"), "{text}");
     // The scene has one sphere, ambient light alone and no mirror.
     assert!(text.contains("// AMBIENT = 1\n// DIFFUSE = 0\n"), "{text}");
-    assert_eq!(names(&text), ["see_tiles"]);
+    assert_eq!(names(&text), ["trace_tiles"]);
     assert_eq!(names(&printed("--spp 4 --entry resolve")), ["resolve"]);
-    assert_eq!(names(&printed("--sparse 0.5")), ["see_samples"]);
+    assert_eq!(names(&printed("--sparse 0.5")), ["trace_samples"]);
     // Each tier has its own.
     let fast = printed("--precision fast");
     assert!(fast.contains("shaders/real_f32.wgsl") && fast.contains("shaders/kernel_plain.wgsl"), "{fast}");
     assert!(printed("--precision robust").contains("shaders/kernel_robust.wgsl"));
 
     let text = printed("--spirv");
-    assert!(text.starts_with("; see_tiles, the kernel of scene.txt at "), "{text}");
+    assert!(text.starts_with("; trace_tiles, the kernel of scene.txt at "), "{text}");
     assert!(text.contains("OpEntryPoint GLCompute") && text.contains("NoContraction"), "{text}");
     assert!(!text.contains("OpFunctionCall"), "{text}");
 }
@@ -533,7 +533,7 @@ fn a_shader_that_is_not_there_is_refused_with_those_that_are() {
     assert_exit(&place.run_without_driver("shader scene.txt"), 4, "");
     assert_exit(&place.run("shader missing.txt"), 3, "cannot read the scene missing.txt");
     if gpu("a_shader_that_is_not_there_is_refused_with_those_that_are").is_some() {
-        let message = "this picture has no kernel `walk_paths`\n  help: it has see_tiles, resolve";
+        let message = "this picture has no kernel `walk_paths`\n  help: it has trace_tiles, resolve";
         assert_exit(&place.run("shader --spp 4 --entry walk_paths scene.txt"), 2, message);
     }
 }

@@ -59,7 +59,7 @@ impl Kernel {
 
 /// Where the spheres are that secondary rays look for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Places {
+pub enum Secondary {
     /// All in the cells of the grid.
     Grid,
     /// All too large for the cells of the grid, or so few.
@@ -90,7 +90,7 @@ pub enum Storage {
 
 /// How paths are walked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Walk {
+pub enum Schedule {
     /// To the end, by the invocation that casts the primary ray.
     InPlace,
     /// A bounce at a time: one an invocation, which also shades what it meets.
@@ -116,7 +116,7 @@ pub struct Variant {
     /// How spheres and lights reach it.
     pub storage: Storage,
     /// Where the spheres are that secondary rays look for.
-    pub places: Places,
+    pub secondary: Secondary,
     /// Whether a pixel has several samples.
     pub samples: bool,
     /// Where something refracts, how many rays wait at the most.
@@ -124,7 +124,7 @@ pub struct Variant {
     /// Which pixels a dispatch renders.
     pub slots: Slots,
     /// How paths are walked, where nothing refracts.
-    pub walk: Walk,
+    pub schedule: Schedule,
     /// Tiles of a dispatch at the most.
     pub dispatch_tiles: u32,
 }
@@ -135,22 +135,22 @@ impl Variant {
         Self {
             kernel,
             storage: Storage::Ranges,
-            places: Places::Large,
+            secondary: Secondary::Large,
             samples: false,
             refraction: None,
             slots: Slots::Tiles,
-            walk: Walk::InPlace,
+            schedule: Schedule::InPlace,
             dispatch_tiles: 0,
         }
     }
 
     /// Whether paths are kept from bounce to bounce.
     pub fn keeps_paths(&self) -> bool {
-        self.refraction.is_none() && self.walk != Walk::InPlace
+        self.refraction.is_none() && self.schedule != Schedule::InPlace
     }
 
     /// Whether walks read copies of the spheres in the order of the grid's lists.
     pub fn copies(&self) -> bool {
-        self.refraction.is_none() && matches!(self.walk, Walk::InTurn(_)) && !self.kernel.carries_low()
+        self.refraction.is_none() && matches!(self.schedule, Schedule::InTurn(_)) && !self.kernel.carries_low()
     }
 }

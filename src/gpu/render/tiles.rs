@@ -40,10 +40,10 @@ impl TileWords {
 
 #[cfg(test)]
 mod tests {
-    use super::super::STAGE_SIZE;
+    use super::super::PATH_QUEUE_SIZE;
     use super::*;
     use crate::gpu::kernel::module::Module;
-    use crate::gpu::kernel::variant::{Kernel, Places, Slots, Storage, Tables, Variant, Walk};
+    use crate::gpu::kernel::variant::{Kernel, Schedule, Secondary, Slots, Storage, Tables, Variant};
     use crate::precision::Tier;
 
     #[test]
@@ -51,11 +51,11 @@ mod tests {
         let variant = Variant {
             kernel: Kernel::Tier(Tier::Fast),
             storage: Storage::Tables(Tables::Stored),
-            places: Places::Both,
+            secondary: Secondary::Both,
             samples: false,
             refraction: None,
             slots: Slots::Tiles,
-            walk: Walk::AtOnce,
+            schedule: Schedule::AtOnce,
             dispatch_tiles: 8,
         };
         let module = Module::render(&variant).parse();
@@ -67,7 +67,7 @@ mod tests {
             });
             sizes.next()
         };
-        assert_eq!([size_of("Tiles"), size_of("Stage")], [Some(tiles_size(8)), Some(STAGE_SIZE)]);
+        assert_eq!([size_of("Tiles"), size_of("PathQueue")], [Some(tiles_size(8)), Some(PATH_QUEUE_SIZE)]);
     }
 
     #[test]

@@ -15,10 +15,10 @@ use crate::gpu::device::readable::Readable;
 use crate::gpu::device::upload::small_buffer;
 use crate::gpu::facade::Gpu;
 use crate::gpu::kernel::module::Module;
+use crate::gpu::kernel::pipeline::{Pipeline, Resource};
 use crate::gpu::kernel::specialisation::Specialisation;
-use crate::gpu::kernel::spirv::Parsed;
-use crate::gpu::kernel::stage::{Resource, Stage};
-use crate::gpu::kernel::variant::{Kernel, Places, Slots, Storage, Walk};
+use crate::gpu::kernel::spirv::ParsedModule;
+use crate::gpu::kernel::variant::{Kernel, Schedule, Secondary, Slots, Storage};
 use crate::gpu::shared;
 use crate::gpu::table::layout::{Layout, ListValues, ParamValues, ShapeValues, double, single};
 use crate::gpu::table::pack::{bytes, low_light, low_shape, shape_value};
@@ -209,9 +209,9 @@ struct Inputs {
 pub struct Prober<'a> {
     gpu: &'a Gpu,
     kernel: Kernel,
-    module: Parsed,
+    module: ParsedModule,
     /// By question, and whether object space is more than a translation.
-    stages: HashMap<(Question, bool), Stage>,
+    pipelines: HashMap<(Question, bool), Pipeline>,
     busy: Duration,
 }
 
@@ -222,9 +222,9 @@ impl<'a> Prober<'a> {
             Kernel::Tier(tier) => gpu.kernel(tier)?,
             kernel => kernel,
         };
-        let module = Parsed::new(&Module::probe(kernel)).map_err(Error::Shader)?;
+        let module = ParsedModule::new(&Module::probe(kernel)).map_err(Error::Shader)?;
         let module = if kernel == Kernel::NoBarrier { module.contractible() } else { module };
-        Ok(Self { gpu, kernel, module, stages: HashMap::new(), busy: Duration::ZERO })
+        Ok(Self { gpu, kernel, module, pipelines: HashMap::new(), busy: Duration::ZERO })
     }
 
     /// Its kernel.
@@ -290,7 +290,7 @@ impl<'a> Prober<'a> {
     }
 
     fn prepare(&mut self, question: Question, ellipsoids: bool) -> Result<(), Error> {
-        if self.stages.contains_key(&(question, ellipsoids)) {
+        if self.pipelines.contains_key(&(question, ellipsoids)) {
             return Ok(());
         }
         let specialisation = Specialisation {
@@ -301,9 +301,9 @@ impl<'a> Prober<'a> {
             blinn: question == Question::Highlight { blinn: true },
             storage: Storage::Ranges,
             lights: 0,
-            places: Places::Large,
+            secondary: Secondary::Large,
             sphere_count: 0,
-            walk: Walk::InPlace,
+            schedule: Schedule::InPlace,
             count_rays: false,
             workgroup: 64,
             samples: 1,
@@ -311,8 +311,8 @@ impl<'a> Prober<'a> {
             dispatch_tiles: 0,
         };
         let constants = specialisation.constants();
-        let stage = Stage::new(self.gpu.compiler(), &self.module, question.entry_point(), &constants)?;
-        self.stages.insert((question, ellipsoids), stage);
+        let pipeline = Pipeline::new(self.gpu.compiler(), &self.module, question.entry_point(), &constants)?;
+        self.pipelines.insert((question, ellipsoids), pipeline);
         Ok(())
     }
 
@@ -325,7 +325,7 @@ impl<'a> Prober<'a> {
         answers: &mut Vec<Answer>,
     ) -> Result<(), Error> {
         let (question, _) = asked;
-        let Some(stage) = self.stages.get(&asked) else { return Ok(()) };
+        let Some(pipeline) = self.pipelines.get(&asked) else { return Ok(()) };
         let device = &self.gpu.device;
         let padded = count.next_multiple_of(GROUP);
         let real = if self.kernel.is_double() { 8 } else { 4 };
@@ -353,10 +353,10 @@ impl<'a> Prober<'a> {
             ];
             let outputs = [("probe_flags", &flags), ("probe_values", &values)];
             let outputs = outputs.map(|(name, output)| (name, Resource::Buffer(output.buffer.clone())));
-            stage.bind(device, &inputs.into_iter().map(buffer).chain(outputs).collect::<Vec<_>>())
+            pipeline.bind(device, &inputs.into_iter().map(buffer).chain(outputs).collect::<Vec<_>>())
         })?;
         let start = Instant::now();
-        stage.dispatch(device, &group, [(padded / GROUP) as u32, 1]);
+        pipeline.dispatch(device, &group, [(padded / GROUP) as u32, 1]);
         device.wait()?;
         self.busy += start.elapsed();
         let flags = flags.read(device, count * 2, <[u32]>::to_vec)?;

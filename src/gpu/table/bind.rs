@@ -6,8 +6,8 @@ use crate::gpu::device::contents::Contents;
 use crate::gpu::device::error::Error;
 use crate::gpu::device::open::Device;
 use crate::gpu::device::upload::{empty_texels, max_texels, upload, upload_texels};
+use crate::gpu::kernel::pipeline::{Resource, Resources};
 use crate::gpu::kernel::specialisation::Specialisation;
-use crate::gpu::kernel::stage::{Resource, Resources};
 use crate::gpu::kernel::variant::Tables;
 
 /// How textures that are tables are bound; `None` for tables in buffers.
