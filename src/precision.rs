@@ -262,7 +262,7 @@ impl Demand {
     pub fn beyond(&self, tier: Tier, scene: &Scene) -> Option<String> {
         let promise = tier.promise();
         let name = |extreme: &Extreme| match extreme.sphere {
-            Some(sphere) => format!("sphere '{}'", scene.sphere_names.shown(sphere)),
+            Some(sphere) => scene.sphere_names.in_words("sphere", sphere),
             None => "no sphere".into(),
         };
         let above = |what: &str, demand: &Extreme, limit: f64| {

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use glam::DVec3;
 use serde::Serialize;
 
-use super::failure::{Failure, OK, OUTPUT, SCENE};
+use super::failure::{Failure, OK, SCENE};
+use super::files::json;
 use super::input::{Input, print_doubts};
 use super::named::{check_named, format_by_ending};
 use super::options::PictureOptions;
@@ -153,14 +154,7 @@ fn named_doubt(scene: &Scene) -> Option<String> {
     Some(format!("without -o there is no picture: {}", refused.message.lines().next()?))
 }
 
-pub(super) fn run(args: &Args) -> u8 {
-    match check_all(args) {
-        Ok(code) => code,
-        Err(failure) => failure.report(),
-    }
-}
-
-fn check_all(args: &Args) -> Result<u8, Failure> {
+pub(super) fn run(args: &Args) -> Result<u8, Failure> {
     let settings = args.picture.settings()?;
     let mut summaries = Vec::new();
     let mut code = OK;
@@ -211,8 +205,7 @@ fn check_all(args: &Args) -> Result<u8, Failure> {
         });
     }
     if args.json {
-        let json = serde_json::to_string_pretty(&summaries).map_err(|e| Failure::new(OUTPUT, e.to_string()))?;
-        outln!("{json}");
+        out!("{}", json(&summaries)?);
     }
     Ok(code)
 }

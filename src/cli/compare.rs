@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::failure::{DIFFERENT, Failure, OK, USAGE};
+use super::files::json;
 use super::guard::Guard;
 use super::input::Input;
 use super::named::format_by_ending;
@@ -142,8 +143,8 @@ pub(super) fn run(args: &Args) -> u8 {
         Ok(code) => code,
         // compare has one code for every trouble, as cmp does.
         Err(failure) => {
-            match serde_json::to_string_pretty(&Trouble { verdict: "trouble", error: &failure.message }) {
-                Ok(json) if args.json => outln!("{json}"),
+            match json(&Trouble { verdict: "trouble", error: &failure.message }) {
+                Ok(json) if args.json => out!("{json}"),
                 _ => _ = failure.report(),
             }
             USAGE
@@ -187,7 +188,7 @@ fn compare(args: &Args) -> Result<u8, Failure> {
         let not_finite_pixels = not_finite;
         let report =
             Report { a, b, verdict, exceeded, difference, explanation, not_finite_pixels, warnings, notes, heat_map };
-        outln!("{}", serde_json::to_string_pretty(&report).map_err(|e| Failure::new(USAGE, e.to_string()))?);
+        out!("{}", json(&report)?);
     } else {
         out!("{}", difference.report(&visible(&a), &visible(&b)));
         for note in &notes {
@@ -247,10 +248,10 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Pair,
         let mut engine = Engine::new(backend, viewed, &effects)?;
         let (rgb, not_finite) = render_picture(&mut engine)?;
         let name = format!("{}, {tier}", device_name(Some(&gpu)));
-        (name, self::picture(scene, rgb)?, Some(not_finite), backend.judge())
+        (name, self::picture(scene, rgb), Some(not_finite), backend.judge())
     };
     let (rgb, _) = render_picture(&mut Engine::new(Backend::Reference, scene.viewed(&settings), &effects)?)?;
-    let expected = self::picture(scene, rgb)?;
+    let expected = self::picture(scene, rgb);
     let reference = Reference::new(&scene.viewed(&settings), &effects);
     let explanation = Explanation::of(&picture, &expected, &reference, &judge);
     let names = [name, format!("reference of {}", loaded.name)];
@@ -274,8 +275,8 @@ fn judge_of_unknown(device: &DeviceOptions, viewed: &ViewedScene, effects: &Effe
     Ok(gpu.map_or_else(|| Judge::of(tier), |gpu| Backend::Device(&gpu, tier).judge()))
 }
 
-fn picture(scene: &Scene, rgb: Vec<u8>) -> Result<Picture, Failure> {
-    Picture::new(scene.width, scene.height, rgb).map_err(|error| Failure::new(USAGE, error.to_string()))
+fn picture(scene: &Scene, rgb: Vec<u8>) -> Picture {
+    Picture::assemble(scene.width, scene.height, rgb)
 }
 
 /// What is worth telling of the picture files.

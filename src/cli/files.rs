@@ -5,6 +5,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::failure::{Failure, OUTPUT};
+use crate::atomic::folder_of;
 use crate::film::Target;
 
 /// The command line as it was given, with the program's plain name; arguments with blanks or quotes are quoted.
@@ -19,11 +20,6 @@ pub(super) fn command() -> String {
     };
     let arguments = std::env::args_os().skip(1).map(|argument| quoted(argument.to_string_lossy().into_owned()));
     std::iter::once("trueray".to_owned()).chain(arguments).collect::<Vec<_>>().join(" ")
-}
-
-/// The folder that a file is in.
-pub(super) fn folder_of(path: &Path) -> &Path {
-    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// Whether a file can be there at all: what cannot be written should be known before minutes of measuring.

@@ -6,7 +6,8 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::failure::{Failure, OUTPUT};
-use super::files::{check_folder, folder_of};
+use super::files::check_folder;
+use crate::atomic::folder_of;
 
 /// The files that a run reads and writes.
 #[derive(Debug, Default)]

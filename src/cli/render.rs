@@ -73,13 +73,6 @@ pub(super) struct Args {
     verbose: bool,
 }
 
-pub(super) fn run(args: &Args) -> u8 {
-    match render_all(args) {
-        Ok(code) => code,
-        Err(failure) => failure.report(),
-    }
-}
-
 /// A scene and where its picture goes.
 struct Job {
     loaded: Loaded,
@@ -88,7 +81,7 @@ struct Job {
 }
 
 /// Renders every scene; a scene with errors does not keep the others from being rendered, files that are in each other's way do.
-fn render_all(args: &Args) -> Result<u8, Failure> {
+pub(super) fn run(args: &Args) -> Result<u8, Failure> {
     if args.scenes.len() > 1 && args.output.as_deref().is_some_and(|output| !output.is_dir()) {
         return Err(Failure::new(USAGE, "several scenes need a folder for -o, or none"));
     }

@@ -47,7 +47,7 @@ impl Picture {
         }
     }
 
-    /// A picture whose parts were computed from other pictures, so that they fit by construction.
+    /// A picture of samples that were rendered for its sides, or computed from other pictures: they fit by construction.
     pub(crate) fn assemble(width: u32, height: u32, rgb: Vec<u8>) -> Self {
         debug_assert_eq!(rgb.len() as u64, width as u64 * height as u64 * 3);
         Self { width, height, rgb }

@@ -10,7 +10,7 @@ use std::sync::{Arc, OnceLock};
 use png::StreamWriter;
 
 use super::{Format, sample_count};
-use crate::atomic::{self, Destination, Part};
+use crate::atomic::{self, Destination, Part, folder_of};
 
 /// Where a picture goes.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -280,13 +280,6 @@ fn create_new(path: &Path, bytes: u64) -> io::Result<(Raw, Placement)> {
         return Err(io::Error::new(io::ErrorKind::NotFound, format!("there is no folder `{}`", folder.display())));
     }
     temporary_for(path, None, bytes)
-}
-
-fn folder_of(path: &Path) -> &Path {
-    match path.parent() {
-        Some(folder) if folder != "" => folder,
-        _ => Path::new("."),
-    }
 }
 
 fn temporary_for(path: &Path, permissions: Option<Permissions>, bytes: u64) -> io::Result<(Raw, Placement)> {

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::error::Distance;
+use super::distance::Distance;
 use super::measure::{Point, Series, Study};
 use super::sampling::PartialPoint;
 use crate::report::Timings;

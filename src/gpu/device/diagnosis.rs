@@ -9,6 +9,7 @@ use ash::vk;
 use serde::Serialize;
 
 use super::drivers::install_hint;
+use crate::threads::lock;
 
 /// This variable, set to 1, lets wgpu use drivers that claim no conformance.
 const ADMITS: &str = "WGPU_ALLOW_UNDERLYING_NONCOMPLIANT_ADAPTER";
@@ -204,7 +205,7 @@ unsafe extern "system" fn hear(
         && !data.p_message.is_null()
     {
         let message = unsafe { CStr::from_ptr(data.p_message) }.to_string_lossy();
-        let mut messages = messages.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut messages = lock(messages);
         let matters = severity != vk::DebugUtilsMessageSeverityFlagsEXT::INFO || message.contains(INSERTS);
         if matters && !messages.iter().any(|other| *other == message) {
             messages.push(message.into_owned());

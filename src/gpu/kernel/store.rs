@@ -1,6 +1,6 @@
 //! The compiled kernels of a device: of earlier runs, of other pictures, and those that are begun before it is open.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use super::ahead::Ahead;
 use super::cache::KernelCache;
@@ -9,6 +9,7 @@ use super::picture::{Pipelines, compile};
 use super::specialisation::Specialisation;
 use crate::gpu::device::error::Error;
 use crate::gpu::device::open::Device;
+use crate::threads::lock;
 
 /// Compiled kernels, those used last at the end.
 type RecentlyUsed = Vec<(Specialisation, Arc<Pipelines>)>;
@@ -58,7 +59,7 @@ impl KernelStore {
         device: &Device,
         specialisation: &Specialisation,
     ) -> Result<(Arc<Pipelines>, bool), Error> {
-        let recent = || self.recent.as_ref().map(|recent| recent.lock().unwrap_or_else(PoisonError::into_inner));
+        let recent = || self.recent.as_ref().map(lock);
         if let Some(mut recent) = recent()
             && let Some(index) = recent.iter().position(|(key, _)| key == specialisation)
         {
