@@ -1,6 +1,7 @@
 //! What reports of measurements share: series of times, numbers for people, plots and CSV records.
 
 pub(crate) mod csv;
+pub(crate) mod lines;
 pub(crate) mod number;
 pub(crate) mod svg;
 mod timings;
