@@ -145,7 +145,7 @@ pub(super) fn run(args: &Args) -> u8 {
         Err(failure) => {
             match json(&Trouble { verdict: "trouble", error: &failure.message }) {
                 Ok(json) if args.json => out!("{json}"),
-                _ => _ = failure.report(),
+                _ => _ = failure.without_cpu().report(),
             }
             USAGE
         }

@@ -1,6 +1,6 @@
 //! `trueray devices`.
 
-use super::failure::{Failure, NO_DEVICE, OUTPUT};
+use super::failure::{Failure, OUTPUT};
 use super::files::json;
 use super::output::{errln, out, outln};
 use crate::gpu::{DeviceTuning, Error, hidden, list};
@@ -53,7 +53,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         }
     }
     if devices.is_empty() {
-        return Err(Failure::new(NO_DEVICE, Error::none_found().to_string()));
+        return Err(Error::none_found().into());
     }
     Ok(())
 }

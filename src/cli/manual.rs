@@ -41,6 +41,7 @@ pub(super) fn man(args: &ManArgs, mut cli: Command) -> Result<(), Failure> {
     };
     let mut page = Vec::new();
     Man::new(command.clone()).render(&mut page).map_err(|error| Failure::new(OUTPUT, error.to_string()))?;
-    out!("{}", String::from_utf8_lossy(&page));
+    // The last section is of lines, as --version prints them.
+    out!("{}", String::from_utf8_lossy(&page).replace(".SH VERSION\n", ".SH VERSION\n.nf\n"));
     Ok(())
 }

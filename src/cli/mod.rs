@@ -131,13 +131,13 @@ pub fn run() -> ExitCode {
         Some(Command::Compare(args)) => Ok(compare::run(&args)),
         Some(Command::Check(args)) => check::run(&args),
         Some(Command::Study(args)) => study::run(&args).map(ok),
-        Some(Command::Stress(args)) => stress::run(&args),
+        Some(Command::Stress(args)) => stress::run(&args).map_err(Failure::without_cpu),
         Some(Command::Bench(args)) => bench::run(&args).map(ok),
         Some(Command::Export(args)) => export::run(&args).map(ok),
         #[cfg(feature = "view")]
         Some(Command::View(args)) => view::run(&args).map(ok),
         Some(Command::Devices(args)) => devices::run(&args).map(ok),
-        Some(Command::Shader(args)) => shader::run(&args).map(ok),
+        Some(Command::Shader(args)) => shader::run(&args).map(ok).map_err(Failure::without_cpu),
         Some(Command::Completions(args)) => {
             manual::completions(&args, Cli::command());
             Ok(failure::OK)

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use super::failure::{Failure, OK, USAGE};
-use super::files::{check_folder, json, save};
+use super::files::{check_place, json, save};
 use super::guard::Guard;
 use super::input::{Loaded, print_doubts};
 use super::named::{check_named, format_by_ending};
@@ -88,7 +88,7 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
     let settings = args.picture.settings()?;
     let mut guard = Guard::new(&args.scenes);
     if let Some(path) = args.stats_json.as_deref().filter(|path| *path != Path::new("-")) {
-        check_folder(path)?;
+        check_place(path)?;
         guard.output("--stats-json", path)?;
     }
     // Opening a device takes longer than reading most scenes: both at once, and what else can be done without one. The device is
@@ -308,7 +308,7 @@ fn job(args: &Args, loaded: Loaded, target: Target) -> Result<Job, Failure> {
         if folder(args).is_some() && !args.allow_any_output {
             check_named(path).map_err(|failure| failure.of(&loaded.name))?;
         }
-        check_folder(path)?;
+        check_place(path)?;
     }
     let format = match (args.format, &target) {
         (Some(format), _) => format,

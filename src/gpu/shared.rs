@@ -12,7 +12,7 @@ pub(super) const TILE_PIXELS: u32 = TILE * TILE;
 pub(super) const UNIFORM: u64 = 1 << 16;
 pub(super) const LEAST_UNIFORM: u64 = 1 << 14;
 /// Storage buffers that kernels read and write beside the tables of a scene, at the most.
-pub(super) const LEAST_BUFFERS: u32 = 4;
+pub const LEAST_BUFFERS: u32 = 4;
 
 /// Tiles of a dispatch at the most on a device that binds so many bytes of a uniform: with their head, four words, they fill one.
 pub(super) const fn dispatch_tiles(uniform: u64) -> u32 {

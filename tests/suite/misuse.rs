@@ -9,7 +9,7 @@ use trueray::gpu::{Batch, Error, Kernel, ProbeRay, Prober, Question, RawBatch, S
 use trueray::misuse::Misuse;
 use trueray::precision::Tier;
 use trueray::sampling::{Density, Fill, MAX_SIDE, Samples};
-use trueray::scene::Scene;
+use trueray::scene::{MAX_RESOLUTION, Scene};
 use trueray::settings::Settings;
 use trueray::tuning::Tuning;
 
@@ -80,10 +80,10 @@ fn pictures_out_of_range_are_refused() {
         for (scene, settings, name) in [
             (sized(0, 40), settings, "width"),
             (sized(40, 0), settings, "height"),
-            (sized((1 << 24) + 1, 1), settings, "width"),
+            (sized(MAX_RESOLUTION + 1, 1), settings, "width"),
             (sized(40, 40), Settings { samples_per_side: 0, ..settings }, "samples"),
-            (sized(40, 40), Settings { samples_per_side: 70_000, ..settings }, "samples"),
-            (sized(40, 40), Settings { max_depth: 1001, ..settings }, "max_depth"),
+            (sized(40, 40), Settings { samples_per_side: Settings::MAX_SAMPLES_PER_SIDE + 1, ..settings }, "samples"),
+            (sized(40, 40), Settings { max_depth: Settings::MAX_DEPTH + 1, ..settings }, "max_depth"),
         ] {
             let error = Engine::new(backend, scene.viewed(&settings), &effects).unwrap_err();
             assert!(matches!(&error, Error::Misuse(Misuse::Picture(why)) if why.contains(name)), "{error}");

@@ -161,16 +161,13 @@ impl Diagnosis {
         if self.usable > 0 {
             reasons.push("a driver that failed before answers now: try again".into());
         }
-        let without = "`--device cpu` renders without any";
         if reasons.is_empty() {
             let chosen = chosen_drivers().map_or_else(String::new, |chosen| format!(" ({chosen})"));
-            return format!("no Vulkan device was found{chosen}. {}; {without}", install_hint());
+            return format!("no Vulkan device was found{chosen}. {}", install_hint());
         }
-        reasons.push(if self.hidden.is_empty() {
-            format!("help: {}; VK_LOADER_DEBUG=error shows what the Vulkan loader meets; {without}", install_hint())
-        } else {
-            format!("help: {without}")
-        });
+        if self.hidden.is_empty() {
+            reasons.push(format!("help: {}; VK_LOADER_DEBUG=error shows what the Vulkan loader meets", install_hint()));
+        }
         format!("no Vulkan device can be used:\n  {}", reasons.join("\n  "))
     }
 }

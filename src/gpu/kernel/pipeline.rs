@@ -8,7 +8,7 @@ use crate::gpu::device::error::Error;
 use crate::gpu::device::open::Device;
 
 /// Tables that a kernel reads and writes at the most, whatever it is specialised for.
-pub(crate) const MAX_TABLES: u32 = 13;
+pub const MAX_TABLES: u32 = 13;
 
 /// What a binding is bound to.
 #[derive(Debug, Clone)]

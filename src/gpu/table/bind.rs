@@ -163,7 +163,7 @@ pub(crate) fn check_fits(device: &Device, tables: Tables, packed: &Packed, lists
         Some((what, size, limit)) => Err(Error::too_large(
             &device.info,
             "this scene",
-            format!("the {what} take {size} bytes, and it holds {limit} at the most; `--device cpu` has no such limit"),
+            format!("the {what} take {size} bytes, and it holds {limit} at the most"),
         )),
     }
 }
