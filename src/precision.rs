@@ -108,15 +108,7 @@ impl Tier {
                 reach: 1e15,
                 brightness: Scalar::Single.max_brightness(),
             },
-            Self::Robust => Promise {
-                share: MAX_SHARE,
-                nearness: 2e-8,
-                axis_ratio: 1e5,
-                exponent: 1e6,
-                bending: 30.0,
-                reach: 1e15,
-                brightness: Scalar::Single.max_brightness(),
-            },
+            Self::Robust => Promise { nearness: 2e-8, axis_ratio: 1e5, ..Self::Fast.promise() },
             Self::Double => Promise {
                 share: MAX_SHARE,
                 nearness: 1e-12,

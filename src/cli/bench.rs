@@ -58,7 +58,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let families = if args.families.is_empty() { FAMILIES.iter().collect() } else { args.families.clone() };
     if args.tune {
         args.reports.check(&mut Guard::default())?;
-        return run_tune(&args.picture, &args.device, args.max_spheres, args.runs as usize, args.reports.json())
+        return run_tune(&args.picture, &args.device, args.max_spheres, args.runs as usize, &args.reports)
             .map_err(Failure::without_cpu);
     }
     if args.list {

@@ -163,7 +163,7 @@ const SLIPS: usize = 2;
 fn meant_command(first: Option<&Path>) -> Option<Failure> {
     let word = first.filter(|path| !path.exists())?.to_str()?;
     let cli = Cli::command();
-    let distance = |name: &str| words::slips(word.to_ascii_lowercase().as_bytes(), name.as_bytes());
+    let distance = |name: &str| words::slips(word.to_ascii_lowercase().as_bytes(), name);
     let nearest =
         cli.get_subcommands().map(|command| (distance(command.get_name()), command)).min_by_key(|pair| pair.0);
     // Of a short word every other is near.

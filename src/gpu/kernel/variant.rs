@@ -131,7 +131,7 @@ pub struct Variant {
 
 impl Variant {
     /// For a kernel that renders no picture: with spheres in storage buffers, and whatever for the rest.
-    pub(super) fn of_ranges(kernel: Kernel) -> Self {
+    pub(crate) fn of_ranges(kernel: Kernel) -> Self {
         Self {
             kernel,
             storage: Storage::Ranges,

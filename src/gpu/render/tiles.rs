@@ -43,21 +43,14 @@ mod tests {
     use super::super::PATH_QUEUE_SIZE;
     use super::*;
     use crate::gpu::kernel::module::Module;
-    use crate::gpu::kernel::variant::{Kernel, Schedule, Secondary, Slots, Storage, Tables, Variant};
+    use crate::gpu::kernel::variant::{Kernel, Schedule, Secondary, Storage, Tables, Variant};
     use crate::precision::Tier;
 
     #[test]
     fn structs_are_as_large_as_the_kernels_have_them() {
-        let variant = Variant {
-            kernel: Kernel::Tier(Tier::Fast),
-            storage: Storage::Tables(Tables::Stored),
-            secondary: Secondary::Both,
-            samples: false,
-            refraction: None,
-            slots: Slots::Tiles,
-            schedule: Schedule::AtOnce,
-            dispatch_tiles: 8,
-        };
+        let (storage, secondary, schedule) = (Storage::Tables(Tables::Stored), Secondary::Both, Schedule::AtOnce);
+        let plain = Variant::of_ranges(Kernel::Tier(Tier::Fast));
+        let variant = Variant { storage, secondary, schedule, dispatch_tiles: 8, ..plain };
         let module = Module::render(&variant).parse();
         let size_of = |name: &str| {
             let types = module.iter().flat_map(|module| module.types.iter());

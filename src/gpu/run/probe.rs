@@ -191,18 +191,8 @@ pub struct RawBatch {
     pub shapes: Vec<[ShapeValues; 2]>,
 }
 
-/// Bytes of one dispatch.
-struct Inputs {
-    shapes: Vec<u8>,
-    shapes_low: Vec<u8>,
-    materials: Vec<u8>,
-    glasses: Vec<u8>,
-    lights: Vec<u8>,
-    lights_low: Vec<u8>,
-    reals: Vec<u8>,
-    reals_low: Vec<u8>,
-    words: Vec<[u32; 4]>,
-}
+/// Bytes of one dispatch, by the shader's name for them.
+type Inputs = Vec<(&'static str, Vec<u8>)>;
 
 /// A kernel on a device that answers batches of rays.
 #[derive(Debug)]
@@ -334,26 +324,15 @@ impl<'a> Prober<'a> {
         let size = question.values();
         let values = Readable::new(device, (padded * size * real / 4) as u64);
         let group = device.checked("reserving buffers", || {
-            let buffer = |(name, contents, usage): (&'static str, &[u8], wgpu::BufferUsages)| {
+            let bound = |name, contents: &[u8], usage| {
                 let contents = if contents.is_empty() { &[0; 256] } else { contents };
                 (name, Resource::Buffer(small_buffer(device, contents, usage)))
             };
-            let storage = wgpu::BufferUsages::STORAGE;
-            let inputs: [(&str, &[u8], wgpu::BufferUsages); 10] = [
-                ("given_params", &params, wgpu::BufferUsages::UNIFORM),
-                ("shapes", &inputs.shapes, storage),
-                ("materials", &inputs.materials, storage),
-                ("lights", &inputs.lights, storage),
-                ("shapes_low", &inputs.shapes_low, storage),
-                ("lights_low", &inputs.lights_low, storage),
-                ("glasses", &inputs.glasses, storage),
-                ("probe_reals", &inputs.reals, storage),
-                ("probe_low", &inputs.reals_low, storage),
-                ("probe_words", bytemuck::cast_slice(&inputs.words), storage),
-            ];
+            let params = bound("given_params", &params, wgpu::BufferUsages::UNIFORM);
+            let inputs = inputs.iter().map(|(name, contents)| bound(*name, contents, wgpu::BufferUsages::STORAGE));
             let outputs = [("probe_flags", &flags), ("probe_values", &values)];
             let outputs = outputs.map(|(name, output)| (name, Resource::Buffer(output.buffer.clone())));
-            pipeline.bind(device, &inputs.into_iter().map(buffer).chain(outputs).collect::<Vec<_>>())
+            pipeline.bind(device, &inputs.chain([params]).chain(outputs).collect::<Vec<_>>())
         })?;
         let start = Instant::now();
         pipeline.dispatch(device, &group, [(padded / GROUP) as u32, 1]);
@@ -459,17 +438,18 @@ impl Part<'_> {
         lights.extend(std::iter::repeat_n(Light { position: DVec3::ZERO, intensity: DVec3::ONE }, padding));
         let mut words: Vec<_> = rays.iter().map(words).collect();
         words.extend(std::iter::repeat_n([0; 4], padding));
-        Inputs {
-            shapes: bytes(shapes.iter().map(L::shape)),
-            shapes_low: bytes(shapes.iter().map(|s| L::shape(&low_shape::<L>(s)))),
-            materials: bytes(spheres.iter().zip(&ellipsoids).map(material)),
-            glasses: bytes(spheres.iter().map(L::glass)),
-            lights: bytes(lights.iter().map(L::light)),
-            lights_low: bytes(lights.iter().map(|light| L::light(&low_light::<L>(light)))),
-            reals: reals::<L>(rays.iter().map(numbers), rays.len()),
-            reals_low: reals::<L>(rays.iter().map(|ray| numbers(ray).map(L::residual)), rays.len()),
-            words,
-        }
+        let numbers = rays.iter().map(numbers);
+        vec![
+            ("shapes", bytes(shapes.iter().map(L::shape))),
+            ("shapes_low", bytes(shapes.iter().map(|s| L::shape(&low_shape::<L>(s))))),
+            ("materials", bytes(spheres.iter().zip(&ellipsoids).map(material))),
+            ("glasses", bytes(spheres.iter().map(L::glass))),
+            ("lights", bytes(lights.iter().map(L::light))),
+            ("lights_low", bytes(lights.iter().map(|light| L::light(&low_light::<L>(light))))),
+            ("probe_reals", reals::<L>(numbers.clone(), rays.len())),
+            ("probe_low", reals::<L>(numbers.map(|all| all.map(L::residual)), rays.len())),
+            ("probe_words", bytes(words)),
+        ]
     }
 }
 
@@ -478,15 +458,11 @@ fn pack_raw<L: Layout>(rays: &[[[f64; 6]; 2]], shapes: &[[ShapeValues; 2]]) -> I
     let real = |part: usize| reals::<L>(rays.iter().map(|ray| ray[part]), rays.len());
     let mut words: Vec<_> = (0..rays.len() as u32).map(|i| [i, i + 1, 1, 0]).collect();
     words.resize(rays.len().next_multiple_of(GROUP), [0; 4]);
-    Inputs {
-        shapes: part(0),
-        shapes_low: part(1),
-        materials: Vec::new(),
-        glasses: Vec::new(),
-        lights: Vec::new(),
-        lights_low: Vec::new(),
-        reals: real(0),
-        reals_low: real(1),
-        words,
-    }
+    vec![
+        ("shapes", part(0)),
+        ("shapes_low", part(1)),
+        ("probe_reals", real(0)),
+        ("probe_low", real(1)),
+        ("probe_words", bytes(words)),
+    ]
 }
