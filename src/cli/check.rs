@@ -39,7 +39,7 @@ struct Summary {
     ok: bool,
     errors: usize,
     warnings: usize,
-    messages: Vec<Message>,
+    messages: Vec<Diagnostic>,
     /// What of a scene without errors can hardly be meant; counted with the warnings.
     doubts: Vec<String>,
     /// Why the file could not be read at all, if so.
@@ -60,25 +60,6 @@ impl Summary {
             unread: Some(failure.message),
             contents: None,
         }
-    }
-}
-
-/// One error or warning.
-#[derive(Debug, Serialize)]
-struct Message {
-    severity: String,
-    line: usize,
-    column: usize,
-    token: String,
-    message: String,
-    expected: String,
-    help: Option<String>,
-}
-
-impl Message {
-    fn new(diagnostic: &Diagnostic) -> Self {
-        let Diagnostic { severity, line, column, token, message, expected, help, .. } = diagnostic.clone();
-        Self { severity: severity.to_string(), line, column, token, message, expected, help }
     }
 }
 
@@ -200,7 +181,7 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
             warnings,
             doubts,
             unread: None,
-            messages: input.parsed.diagnostics.iter().map(Message::new).collect(),
+            messages: input.parsed.diagnostics,
             scene: input.name,
             contents,
         });

@@ -8,7 +8,7 @@ use trueray::engine::{Backend, Engine, Filler, Options, Pixels, render_partial, 
 use trueray::gpu::{Batch, Error, Kernel, ProbeRay, Prober, Question, RawBatch, Surface, echo_layout};
 use trueray::misuse::Misuse;
 use trueray::precision::Tier;
-use trueray::sampling::{Density, Fill, MAX_SIDE, Samples};
+use trueray::sampling::{Density, Fill, MAX_PIXELS, MAX_SIDE, Samples};
 use trueray::scene::{MAX_RESOLUTION, Scene};
 use trueray::settings::Settings;
 use trueray::tuning::Tuning;
@@ -89,7 +89,7 @@ fn pictures_out_of_range_are_refused() {
             assert!(matches!(&error, Error::Misuse(Misuse::Picture(why)) if why.contains(name)), "{error}");
         }
     }
-    for size in [(0, 5), (5, 0), (MAX_SIDE + 1, 1), (8192, 4097)] {
+    for size in [(0, 5), (5, 0), (MAX_SIDE + 1, 1), (8192, (MAX_PIXELS / 8192) as u32 + 1)] {
         assert!(matches!(Samples::new(size, &Density::FULL), Err(Misuse::Picture(_))), "{size:?}");
     }
     let samples = Samples::new(SIZE, &Density::FULL).unwrap();

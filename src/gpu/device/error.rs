@@ -109,7 +109,7 @@ impl fmt::Display for Error {
             Self::Unsuitable { device, why } => write!(f, "{device} cannot be used: {why}"),
             Self::TooLarge { device, what, limit } => write!(f, "{device} is too small for {what}: {limit}"),
             Self::OutOfRange { kernel, why } => {
-                let help = "help: precision `double` can, where the device has f64";
+                let help = "help: --precision double can, where the device has f64";
                 write!(f, "{kernel} cannot render this scene: {why}\n  {help}")
             }
             Self::ArithmeticRefused { device, pairs, sums, products } => write!(

@@ -33,7 +33,7 @@ pub struct Specialisation {
     pub secondary: Secondary,
     /// How many there are, where all are outside the grid.
     pub sphere_count: u32,
-    /// How paths are walked, where nothing refracts.
+    /// How the bounces of paths are scheduled, where nothing refracts.
     pub schedule: Schedule,
     /// Side of the grid of samples in a pixel.
     pub samples: u32,

@@ -88,7 +88,7 @@ pub enum Storage {
     Ranges,
 }
 
-/// How paths are walked.
+/// How the bounces of paths are scheduled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Schedule {
     /// To the end, by the invocation that casts the primary ray.
@@ -123,7 +123,7 @@ pub struct Variant {
     pub refraction: Option<NonZeroU32>,
     /// Which pixels a dispatch renders.
     pub slots: Slots,
-    /// How paths are walked, where nothing refracts.
+    /// How the bounces of paths are scheduled, where nothing refracts.
     pub schedule: Schedule,
     /// Tiles of a dispatch at the most.
     pub dispatch_tiles: u32,

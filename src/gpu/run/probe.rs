@@ -251,9 +251,9 @@ impl<'a> Prober<'a> {
             let lights = batch.lights.iter().skip(chunk * MAX_RAYS).take(rays.len());
             let lights: Vec<_> = lights.map(|&position| Light { position, intensity: DVec3::ONE }).collect();
             let bounces = matches!(question, Question::Bounce | Question::Refract).then_some(batch.bounces);
-            let part = Part { rays, surfaces, first, lights, bounces, ellipsoids, batch };
+            let chunk = Chunk { rays, surfaces, first, lights, bounces, ellipsoids, batch };
             let inputs =
-                if self.kernel.is_double() { part.pack::<double::Layout>() } else { part.pack::<single::Layout>() };
+                if self.kernel.is_double() { chunk.pack::<double::Layout>() } else { chunk.pack::<single::Layout>() };
             self.dispatch((question, ellipsoids), &inputs, rays.len(), first, &mut answers)?;
         }
         Ok(answers)
@@ -390,7 +390,7 @@ fn reals<L: Layout>(values: impl Iterator<Item = [f64; 6]>, count: usize) -> Vec
 }
 
 /// What of a batch one dispatch answers.
-struct Part<'a> {
+struct Chunk<'a> {
     rays: &'a [ProbeRay],
     /// Those that the rays can meet, from this one of the batch on.
     surfaces: &'a [Surface],
@@ -402,7 +402,7 @@ struct Part<'a> {
     batch: &'a Batch,
 }
 
-impl Part<'_> {
+impl Chunk<'_> {
     fn pack<L: Layout>(&self) -> Inputs {
         let Self { rays, first, .. } = *self;
         let sphere = |s: &Surface| Sphere {
