@@ -19,7 +19,6 @@ use crate::effects::Effects;
 use crate::engine::{Backend, Engine, device_name, render_picture};
 use crate::film::{Encoded, Leniency, Picture, ReadError, Target};
 use crate::gpu::Choice;
-use crate::scene::Scene;
 use crate::viewed::ViewedScene;
 use crate::words::{count, visible};
 
@@ -218,6 +217,7 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Pair,
     let mut loaded = input.into_renderable(args.json)?;
     args.picture.resize(&mut loaded.scene);
     let scene = &loaded.scene;
+    let rendered = |rgb| Picture::assemble(scene.width, scene.height, rgb);
     let mut remarks = Remarks::default();
     let encoded = picture.map(open).transpose()?;
     if let Some((name, encoded)) = &encoded {
@@ -248,10 +248,10 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Pair,
         let mut engine = Engine::new(backend, viewed, &effects)?;
         let (rgb, not_finite) = render_picture(&mut engine)?;
         let name = format!("{}, {tier}", device_name(Some(&gpu)));
-        (name, self::picture(scene, rgb), Some(not_finite), backend.judge())
+        (name, rendered(rgb), Some(not_finite), backend.judge())
     };
     let (rgb, _) = render_picture(&mut Engine::new(Backend::Reference, scene.viewed(&settings), &effects)?)?;
-    let expected = self::picture(scene, rgb);
+    let expected = rendered(rgb);
     let reference = Reference::new(&scene.viewed(&settings), &effects);
     let explanation = Explanation::of(&picture, &expected, &reference, &judge);
     let names = [name, format!("reference of {}", loaded.name)];
@@ -273,10 +273,6 @@ fn judge_of_unknown(device: &DeviceOptions, viewed: &ViewedScene, effects: &Effe
     };
     let tier = device.selection(gpu.as_ref(), viewed, effects).tier;
     Ok(gpu.map_or_else(|| Judge::of(tier), |gpu| Backend::Device(&gpu, tier).judge()))
-}
-
-fn picture(scene: &Scene, rgb: Vec<u8>) -> Picture {
-    Picture::assemble(scene.width, scene.height, rgb)
 }
 
 /// What is worth telling of the picture files.
