@@ -115,7 +115,7 @@ pub struct GpuRenderer<'a, O = Rows> {
     /// Parts that the device's threads take of a dispatch.
     hands: usize,
     work: Option<Work>,
-    inputs: Inputs,
+    inputs: BuildInputs,
     tiles_per_dispatch: u32,
     times: DeviceTimes,
     /// Dispatches so far, those of no pixel included.
@@ -129,7 +129,7 @@ pub struct GpuRenderer<'a, O = Rows> {
 
 /// Everything that is needed to build the kernels once a tile asks for them.
 #[derive(Debug)]
-struct Inputs {
+struct BuildInputs {
     resources: Resources,
     specialisation: Specialisation,
 }
@@ -261,7 +261,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
                 Class::Integrated | Class::Discrete => 1,
             },
             work: None,
-            inputs: Inputs { resources, specialisation },
+            inputs: BuildInputs { resources, specialisation },
             tiles_per_dispatch: tiles.clamp(1, u64::from(specialisation.dispatch_tiles)) as u32,
             times: DeviceTimes::default(),
             submitted: 0,
@@ -318,7 +318,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
     fn build(&mut self) -> Result<Work, Error> {
         let start = Instant::now();
         let gpu = self.gpu;
-        let Inputs { resources, specialisation } = &self.inputs;
+        let BuildInputs { resources, specialisation } = &self.inputs;
         let (pipelines, used_before) = gpu.pipelines(specialisation)?;
         let capacity = self.capacity();
         let has_bounces = self.max_depth > 0;
