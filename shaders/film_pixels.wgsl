@@ -1,5 +1,5 @@
 // One sample a pixel: its result is the pixel.
-// needs: counters, effects, quantize, real, see, slots
+// needs: counters, effects, quantize, real, slots, trace
 // host: STATUS_CUT, STATUS_TANGENT
 
 // Red, green, blue in the low bytes, status in the high one.
@@ -17,9 +17,9 @@ fn finish(slot: u32, color: vec3r) {
     if TANGENTS {
         status |= pixels[slot] & (STATUS_TANGENT << 24u);
     }
-    pixels[slot] = packed_pixel(color) | status;
+    pixels[slot] = levels(color) | status;
 }
 
-fn see_pixel(pixel: vec2<u32>, slot: u32) {
-    see(pixel, slot, 0u);
+fn trace_pixel(pixel: vec2<u32>, slot: u32) {
+    trace(pixel, slot, 0u);
 }

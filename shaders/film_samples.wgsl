@@ -1,5 +1,5 @@
 // Several samples a pixel: their results are colours, of which the pixel is the mean.
-// needs: counters, effects, real, see, slots
+// needs: counters, effects, real, slots, trace
 // host: STATUS_CUT, STATUS_TANGENT
 
 // With the status, as a number.
@@ -21,10 +21,10 @@ fn finish(slot: u32, color: vec3r) {
 }
 
 // Row by row in the pixel.
-fn see_pixel(pixel: vec2<u32>, first_slot: u32) {
+fn trace_pixel(pixel: vec2<u32>, first_slot: u32) {
     var sample = 0u;
     loop {
-        see(pixel, first_slot, sample);
+        trace(pixel, first_slot, sample);
         sample++;
         if sample == SAMPLES * SAMPLES {
             break;

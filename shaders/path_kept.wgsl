@@ -1,5 +1,5 @@
 // A sample's way from bounce to bounce, by the kernels of walk_*.wgsl; read it beside src/cpu/trace.rs.
-// needs: counters, effects, film, intersect, ray, real, reflect, scene, shade, stage, tables, types
+// needs: counters, effects, film, intersect, queue, ray, real, reflect, scene, shade, tables, types
 
 // Paths are samples' reflection rays and what they have gathered so far: those of this bounce, and those of the next.
 // Each path has VECTORS vectors:
@@ -44,7 +44,7 @@ fn reflect(surface: Surface, color: vec3r, throughput: real, slot: u32) {
         reflection_rays++;
     }
     let ray = reflection_ray(surface);
-    let at = atomicAdd(&stage.next_path_count, 1u) * VECTORS;
+    let at = atomicAdd(&path_queue.next_path_count, 1u) * VECTORS;
     keep_path(at, vec4r(high_of(ray.origin), throughput));
     keep_path(at + 1u, vec4r(direction_of(ray), real(slot)));
     keep_path(at + 2u, vec4r(color, real(surface.own.shape)));

@@ -2,7 +2,7 @@
 // needs: real, types
 // host: STATUS_NOT_FINITE
 
-fn packed_pixel(color: vec3r) -> u32 {
+fn levels(color: vec3r) -> u32 {
     let level = vec3<u32>(params.quantize_scale * clamp(color, vec3r(), vec3r(real(1.0))) + params.quantize_bias);
     let finite = is_finite(color.x) && is_finite(color.y) && is_finite(color.z);
     let status = select(STATUS_NOT_FINITE, 0u, finite);

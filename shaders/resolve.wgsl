@@ -26,5 +26,5 @@ fn resolve(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     // No dispatch is number 0.
     status &= select(STATUS_FLAGS, 255u, is_whole);
-    pixels[id.x] = packed_pixel(first.xyz + excess / real(SAMPLES * SAMPLES)) | (status << 24u);
+    pixels[id.x] = levels(first.xyz + excess / real(SAMPLES * SAMPLES)) | (status << 24u);
 }

@@ -17,8 +17,8 @@ fn dispatch_bits() -> u32 {
 
 // One lane casts the primary rays of one pixel and shades what they hit.
 @compute @workgroup_size(TILE_PIXELS)
-fn see_samples(@builtin(global_invocation_id) id: vec3<u32>) {
+fn trace_samples(@builtin(global_invocation_id) id: vec3<u32>) {
     params = given_params;
     load_lights();
-    see_pixel(list.pixels[id.x], id.x * SAMPLES * SAMPLES);
+    trace_pixel(list.pixels[id.x], id.x * SAMPLES * SAMPLES);
 }

@@ -20,12 +20,12 @@ fn dispatch_bits() -> u32 {
 
 // One workgroup casts the primary rays of one tile, row by row, and shades what they hit.
 @compute @workgroup_size(TILE_PIXELS)
-fn see_tiles(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) index: u32) {
+fn trace_tiles(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) index: u32) {
     params = given_params;
     load_lights();
     let word = tiles.words[group.x / 4u][group.x % 4u];
     let row = word >> tiles.column_bits;
     let tile = vec2(word - (row << tiles.column_bits), tiles.first_row + row);
     let pixel = tile * TILE + vec2(index % TILE, index / TILE);
-    see_pixel(pixel, (group.x * TILE_PIXELS + index) * SAMPLES * SAMPLES);
+    trace_pixel(pixel, (group.x * TILE_PIXELS + index) * SAMPLES * SAMPLES);
 }

@@ -3,7 +3,7 @@
 // The lanes of a vector wait for the one with the longest walk, which among many spheres takes more than twice as long as the
 // others. So an invocation walks several paths, one after another, and begins the next while its neighbours are still on their
 // way.
-// needs: counters, distance, effects, grid, intersect, path, ray, real, scene, secondary, stage, tables, types
+// needs: counters, distance, effects, grid, intersect, path, queue, ray, real, scene, secondary, tables, types
 // host: MAX_LARGE
 
 // For each path the sphere that its ray meets, which is below 2^24, and these bits.
@@ -23,7 +23,7 @@ const_assert TURNS + 1u + MAX_LARGE / 2u <= TURNS_OF_LOOK;
 fn walk_paths(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) index: u32) {
     params = given_params;
     let first = group.x * GROUP * PATHS;
-    let end = min(stage.path_count, first + GROUP * PATHS);
+    let end = min(path_queue.path_count, first + GROUP * PATHS);
     let range = reflection_range();
     // The path that is walked, if it is below `end`, and the next one.
     var current = end;
@@ -72,7 +72,7 @@ fn walk_paths(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation
 fn shade_paths(@builtin(global_invocation_id) id: vec3<u32>) {
     params = given_params;
     load_lights();
-    let count = stage.path_count;
+    let count = path_queue.path_count;
     let is_path = id.x < count;
     let index = min(id.x, count - 1u);
     let path = path_of(index);

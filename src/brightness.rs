@@ -116,7 +116,7 @@ impl Brightness {
     pub fn problem(&self, scene: &Scene, scalar: Scalar) -> Option<String> {
         self.overflows(scalar).then(|| {
             let source = match self.sphere {
-                Some(sphere) => format!("the numbers of sphere '{}'", scene.sphere_names.shown(sphere)),
+                Some(sphere) => format!("the numbers of {}", scene.sphere_names.in_words("sphere", sphere)),
                 None => "the numbers of AMBIENT or BACK".into(),
             };
             let (name, limit) = match scalar {

@@ -322,7 +322,7 @@ impl<'a> Needs<'a> {
     }
 
     fn name(&self, index: usize) -> String {
-        format!("sphere '{}'", self.scene.sphere_names.shown(index))
+        self.scene.sphere_names.in_words("sphere", index)
     }
 
     /// The first sphere with the property, for a reason in words.
@@ -384,8 +384,8 @@ impl<'a> Needs<'a> {
                 let blocker =
                     spheres.iter().enumerate().find(|&(b, blocker)| b != r && may_block(light, receiver, blocker));
                 if let Some((b, _)) = blocker {
-                    let light = self.scene.light_names.shown(l);
-                    return Ok(format!("{} may stand between light '{light}' and {}", self.name(b), self.name(r)));
+                    let light = self.scene.light_names.in_words("light", l);
+                    return Ok(format!("{} may stand between {light} and {}", self.name(b), self.name(r)));
                 }
             }
         }

@@ -47,14 +47,14 @@ pub fn reach(scene: &Scene, effects: &Effects) -> f64 {
 /// The first sphere whose least semi-axis is small, in words.
 fn name_of_small(scene: &Scene, is_small: impl Fn(f64) -> bool + Sync) -> Option<String> {
     let first = scene.spheres.par_iter().position_first(|s| is_small(s.scale.abs().min_element()))?;
-    Some(format!("sphere '{}'", scene.sphere_names.shown(first)))
+    Some(scene.sphere_names.in_words("sphere", first))
 }
 
 /// What is too large or too small beside the rest.
 fn sizes(viewed: &ViewedScene) -> Option<String> {
     let (scene, greatest) = (viewed.scene(), viewed.greatest());
-    let sphere = |index: usize| format!("sphere '{}'", scene.sphere_names.shown(index));
-    let light = |index: usize| format!("light '{}'", scene.light_names.shown(index));
+    let sphere = |index: usize| scene.sphere_names.in_words("sphere", index);
+    let light = |index: usize| scene.light_names.in_words("light", index);
 
     let far_sphere = || scene.spheres.par_iter().position_first(|s| !s.center.is_finite()).map(sphere);
     let far_light = scene.lights.iter().position(|light| !light.position.is_finite()).map(light);

@@ -108,15 +108,7 @@ impl Tier {
                 reach: 1e15,
                 brightness: Scalar::Single.max_brightness(),
             },
-            Self::Robust => Promise {
-                share: MAX_SHARE,
-                nearness: 2e-8,
-                axis_ratio: 1e5,
-                exponent: 1e6,
-                bending: 30.0,
-                reach: 1e15,
-                brightness: Scalar::Single.max_brightness(),
-            },
+            Self::Robust => Promise { nearness: 2e-8, axis_ratio: 1e5, ..Self::Fast.promise() },
             Self::Double => Promise {
                 share: MAX_SHARE,
                 nearness: 1e-12,
@@ -262,7 +254,7 @@ impl Demand {
     pub fn beyond(&self, tier: Tier, scene: &Scene) -> Option<String> {
         let promise = tier.promise();
         let name = |extreme: &Extreme| match extreme.sphere {
-            Some(sphere) => format!("sphere '{}'", scene.sphere_names.shown(sphere)),
+            Some(sphere) => scene.sphere_names.in_words("sphere", sphere),
             None => "no sphere".into(),
         };
         let above = |what: &str, demand: &Extreme, limit: f64| {

@@ -6,7 +6,7 @@ use std::num::NonZero;
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Sender, channel};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::{Builder, available_parallelism};
 
 use rayon::{ThreadBuilder, ThreadPoolBuilder};
@@ -60,6 +60,11 @@ fn idle_threads(wanted: usize) -> Vec<Sender<ThreadBuilder>> {
     threads
 }
 
+/// What a mutex guards. None is poisoned in a way that matters: every change under a lock here is complete at each step.
+pub(crate) fn lock<T: ?Sized>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 /// Whether there is no thread beside the main one: then no other may wait for the pool.
 pub(crate) fn is_alone() -> bool {
     ALONE.load(Ordering::Relaxed)
@@ -77,7 +82,7 @@ pub(crate) fn at_once<A: Send, B>(there: impl FnOnce() -> A + Send, here: impl F
     let task = Mutex::new(Some(there));
     // Whoever takes it runs it: a thread that cannot be had leaves it where it is.
     let run = || {
-        let task = task.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let task = lock(&task).take();
         task.map(|task| task())
     };
     std::thread::scope(|scope| {

@@ -161,17 +161,8 @@ pub struct Measured {
     pub rays_per_second: f64,
 }
 
-/// Measures everything that `plan` asks for; `scene_done` hears of every scene.
+/// Measures everything that `plan` asks for; `scene_done` hears of every scene, and of all that was measured so far.
 pub fn bench(
-    setup: &RenderSetup,
-    plan: &BenchPlan,
-    mut scene_done: impl FnMut(&Family, &SceneResult),
-) -> Result<Bench, gpu::Error> {
-    watched(setup, plan, |_, family, scene| scene_done(family, scene))
-}
-
-/// Likewise; `scene_done` also hears of all that was measured so far.
-pub fn watched(
     setup: &RenderSetup,
     plan: &BenchPlan,
     mut scene_done: impl FnMut(&Bench, &Family, &SceneResult),

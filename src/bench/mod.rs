@@ -11,9 +11,7 @@ mod tune;
 
 pub use families::{Axis, FAMILIES, Family};
 pub use fit::growth_exponent;
-pub use measure::{
-    Bench, BenchPlan, FamilyResult, Growth, Measured, RenderSetup, Renderer, SceneResult, bench, watched,
-};
+pub use measure::{Bench, BenchPlan, FamilyResult, Growth, Measured, RenderSetup, Renderer, SceneResult, bench};
 pub use phases::{PHASES, Phase};
 pub use report::html;
 pub use table::{csv, csv_columns, heads};

@@ -1,37 +1,22 @@
 //! The report: one HTML file that needs nothing else.
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, html};
 
 use super::measure::{Bench, FamilyResult, Measured, SceneResult};
 use super::phases::PHASES;
 use super::plots;
 use crate::engine::Rays;
-use crate::report::STYLE;
 use crate::report::number::{short, time};
+use crate::report::page;
 use crate::words::count;
 
 /// The page with all measurements; `command` is what made them.
 pub fn html(bench: &Bench, command: &str) -> String {
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { "How fast" }
-                style { (PreEscaped(STYLE)) }
-            }
-            body {
-                h1 { "How fast" }
-                p.sub { "Time of a picture over the size of its scene, measured by " code { (command) } }
-                (facts(bench))
-                @for family in &bench.families { (section(family)) }
-                h2 { "How this was measured" }
-                (method(bench))
-            }
-        }
+    let content = html! {
+        (facts(bench))
+        @for family in &bench.families { (section(family)) }
     };
-    page.into_string()
+    page("How fast", "Time of a picture over the size of its scene", command, &content, &method(bench))
 }
 
 fn facts(bench: &Bench) -> Markup {
@@ -134,7 +119,7 @@ fn method(bench: &Bench) -> Markup {
             }
             li {
                 "The time of a picture is wall-clock time from the scene to rows of pixels in memory, without compiling, which \
-                 further pictures do not repeat. Stages are medians, each by itself, so they need not add up."
+                 further pictures do not repeat. Phases are medians, each by itself, so they need not add up."
             }
             li {
                 "A renderer is skipped where its runs would exceed the time budget: by the time of its first picture, or, \

@@ -150,6 +150,6 @@ fn measured_fields(measured: &Measured, last: [String; 3]) -> Vec<String> {
     fields.extend([primary, shadow, reflection].map(u64::to_string));
     fields.push(rays_per_second.to_string());
     fields.extend(last);
-    fields.push(picture.runs().iter().map(ToString::to_string).collect::<Vec<_>>().join(" "));
+    fields.push(picture.listed());
     fields
 }

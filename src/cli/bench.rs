@@ -1,9 +1,9 @@
 //! `trueray bench`.
 
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 
-use super::failure::{Failure, OK, OUTPUT};
+use super::failure::{Failure, OUTPUT};
 use super::files::{command, save, seconds};
 use super::guard::Guard;
 use super::options::{DeviceOptions, PictureOptions};
@@ -12,7 +12,8 @@ use super::progress::{Progress, Style};
 use super::reports::Reports;
 use super::signals::{say_last, say_nothing};
 use super::tune::run_tune;
-use crate::bench::{Bench, BenchPlan, FAMILIES, Family, RenderSetup, csv, heads, html, watched};
+use crate::bench::{Bench, BenchPlan, FAMILIES, Family, RenderSetup, bench, csv, heads, html};
+use crate::threads::lock;
 
 /// Arguments of `trueray bench`.
 #[derive(Debug, clap::Args)]
@@ -53,18 +54,12 @@ pub(super) struct Args {
     progress: Style,
 }
 
-pub(super) fn run(args: &Args) -> u8 {
-    match run_bench(args) {
-        Ok(()) => OK,
-        Err(failure) => failure.report(),
-    }
-}
-
-fn run_bench(args: &Args) -> Result<(), Failure> {
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let families = if args.families.is_empty() { FAMILIES.iter().collect() } else { args.families.clone() };
     if args.tune {
         args.reports.check(&mut Guard::default())?;
-        return run_tune(&args.picture, &args.device, args.max_spheres, args.runs as usize, args.reports.json());
+        return run_tune(&args.picture, &args.device, args.max_spheres, args.runs as usize, &args.reports)
+            .map_err(Failure::without_cpu);
     }
     if args.list {
         list(&families);
@@ -97,7 +92,7 @@ fn run_bench(args: &Args) -> Result<(), Failure> {
     let scenes = plan.families.iter().map(|family| plan.sizes(family).count()).sum::<usize>();
     let mut done = 0;
     let mut progress = Progress::new(args.progress, "bench");
-    let bench = watched(&setup, &plan, |bench, family, scene| {
+    let bench = bench(&setup, &plan, |bench, family, scene| {
         *lock(&measured) = Some(bench.clone());
         done += 1;
         progress.pause(|| args.reports.show(&scene.report(family)));
@@ -107,10 +102,6 @@ fn run_bench(args: &Args) -> Result<(), Failure> {
     say_nothing();
     args.reports.show(&format!("\n{}\n{}\n", bench.growth_report(), bench.head()));
     write(&args.reports, &bench)
-}
-
-fn lock(measured: &Mutex<Option<Bench>>) -> MutexGuard<'_, Option<Bench>> {
-    measured.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 fn write(reports: &Reports, bench: &Bench) -> Result<(), Failure> {

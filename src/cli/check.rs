@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use glam::DVec3;
 use serde::Serialize;
 
-use super::failure::{Failure, OK, OUTPUT, SCENE};
+use super::failure::{Failure, OK, SCENE};
+use super::files::{check_place, json};
 use super::input::{Input, print_doubts};
 use super::named::{check_named, format_by_ending};
 use super::options::PictureOptions;
@@ -38,7 +39,7 @@ struct Summary {
     ok: bool,
     errors: usize,
     warnings: usize,
-    messages: Vec<Message>,
+    messages: Vec<Diagnostic>,
     /// What of a scene without errors can hardly be meant; counted with the warnings.
     doubts: Vec<String>,
     /// Why the file could not be read at all, if so.
@@ -59,25 +60,6 @@ impl Summary {
             unread: Some(failure.message),
             contents: None,
         }
-    }
-}
-
-/// One error or warning.
-#[derive(Debug, Serialize)]
-struct Message {
-    severity: String,
-    line: usize,
-    column: usize,
-    token: String,
-    message: String,
-    expected: String,
-    help: Option<String>,
-}
-
-impl Message {
-    fn new(diagnostic: &Diagnostic) -> Self {
-        let Diagnostic { severity, line, column, token, message, expected, help, .. } = diagnostic.clone();
-        Self { severity: severity.to_string(), line, column, token, message, expected, help }
     }
 }
 
@@ -149,18 +131,12 @@ impl Contents {
 /// What `render` would say of the file that OUTPUT names, run in this folder.
 fn named_doubt(scene: &Scene) -> Option<String> {
     let path = Path::new(scene.output.as_ref()?);
-    let refused = check_named(path).and_then(|()| format_by_ending(path).map(drop)).err()?;
+    let refused =
+        check_named(path).and_then(|()| check_place(path)).and_then(|()| format_by_ending(path).map(drop)).err()?;
     Some(format!("without -o there is no picture: {}", refused.message.lines().next()?))
 }
 
-pub(super) fn run(args: &Args) -> u8 {
-    match check_all(args) {
-        Ok(code) => code,
-        Err(failure) => failure.report(),
-    }
-}
-
-fn check_all(args: &Args) -> Result<u8, Failure> {
+pub(super) fn run(args: &Args) -> Result<u8, Failure> {
     let settings = args.picture.settings()?;
     let mut summaries = Vec::new();
     let mut code = OK;
@@ -205,14 +181,13 @@ fn check_all(args: &Args) -> Result<u8, Failure> {
             warnings,
             doubts,
             unread: None,
-            messages: input.parsed.diagnostics.iter().map(Message::new).collect(),
+            messages: input.parsed.diagnostics,
             scene: input.name,
             contents,
         });
     }
     if args.json {
-        let json = serde_json::to_string_pretty(&summaries).map_err(|e| Failure::new(OUTPUT, e.to_string()))?;
-        outln!("{json}");
+        out!("{}", json(&summaries)?);
     }
     Ok(code)
 }

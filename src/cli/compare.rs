@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::failure::{DIFFERENT, Failure, OK, USAGE};
+use super::files::json;
 use super::guard::Guard;
 use super::input::Input;
 use super::named::format_by_ending;
@@ -18,7 +19,6 @@ use crate::effects::Effects;
 use crate::engine::{Backend, Engine, device_name, render_picture};
 use crate::film::{Encoded, Leniency, Picture, ReadError, Target};
 use crate::gpu::Choice;
-use crate::scene::Scene;
 use crate::viewed::ViewedScene;
 use crate::words::{count, visible};
 
@@ -142,9 +142,9 @@ pub(super) fn run(args: &Args) -> u8 {
         Ok(code) => code,
         // compare has one code for every trouble, as cmp does.
         Err(failure) => {
-            match serde_json::to_string_pretty(&Trouble { verdict: "trouble", error: &failure.message }) {
-                Ok(json) if args.json => outln!("{json}"),
-                _ => _ = failure.report(),
+            match json(&Trouble { verdict: "trouble", error: &failure.message }) {
+                Ok(json) if args.json => out!("{json}"),
+                _ => _ = failure.without_cpu().report(),
             }
             USAGE
         }
@@ -187,7 +187,7 @@ fn compare(args: &Args) -> Result<u8, Failure> {
         let not_finite_pixels = not_finite;
         let report =
             Report { a, b, verdict, exceeded, difference, explanation, not_finite_pixels, warnings, notes, heat_map };
-        outln!("{}", serde_json::to_string_pretty(&report).map_err(|e| Failure::new(USAGE, e.to_string()))?);
+        out!("{}", json(&report)?);
     } else {
         out!("{}", difference.report(&visible(&a), &visible(&b)));
         for note in &notes {
@@ -217,6 +217,7 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Pair,
     let mut loaded = input.into_renderable(args.json)?;
     args.picture.resize(&mut loaded.scene);
     let scene = &loaded.scene;
+    let rendered = |rgb| Picture::assemble(scene.width, scene.height, rgb);
     let mut remarks = Remarks::default();
     let encoded = picture.map(open).transpose()?;
     if let Some((name, encoded)) = &encoded {
@@ -247,10 +248,10 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Pair,
         let mut engine = Engine::new(backend, viewed, &effects)?;
         let (rgb, not_finite) = render_picture(&mut engine)?;
         let name = format!("{}, {tier}", device_name(Some(&gpu)));
-        (name, self::picture(scene, rgb)?, Some(not_finite), backend.judge())
+        (name, rendered(rgb), Some(not_finite), backend.judge())
     };
     let (rgb, _) = render_picture(&mut Engine::new(Backend::Reference, scene.viewed(&settings), &effects)?)?;
-    let expected = self::picture(scene, rgb)?;
+    let expected = rendered(rgb);
     let reference = Reference::new(&scene.viewed(&settings), &effects);
     let explanation = Explanation::of(&picture, &expected, &reference, &judge);
     let names = [name, format!("reference of {}", loaded.name)];
@@ -272,10 +273,6 @@ fn judge_of_unknown(device: &DeviceOptions, viewed: &ViewedScene, effects: &Effe
     };
     let tier = device.selection(gpu.as_ref(), viewed, effects).tier;
     Ok(gpu.map_or_else(|| Judge::of(tier), |gpu| Backend::Device(&gpu, tier).judge()))
-}
-
-fn picture(scene: &Scene, rgb: Vec<u8>) -> Result<Picture, Failure> {
-    Picture::new(scene.width, scene.height, rgb).map_err(|error| Failure::new(USAGE, error.to_string()))
 }
 
 /// What is worth telling of the picture files.

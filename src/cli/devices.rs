@@ -1,7 +1,8 @@
 //! `trueray devices`.
 
-use super::failure::{Failure, NO_DEVICE, OK, OUTPUT};
-use super::output::{errln, outln};
+use super::failure::{Failure, OUTPUT};
+use super::files::json;
+use super::output::{errln, out, outln};
 use crate::gpu::{DeviceTuning, Error, hidden, list};
 
 /// Arguments of `trueray devices`.
@@ -13,23 +14,14 @@ pub(super) struct Args {
     json: bool,
 }
 
-pub(super) fn run(args: &Args) -> u8 {
-    match print(args) {
-        Ok(()) => OK,
-        Err(failure) => failure.report(),
-    }
-}
-
-fn print(args: &Args) -> Result<(), Failure> {
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let devices = list()?;
     let hidden = hidden();
     if args.json {
         // Those without an index cannot be chosen.
         let usable = devices.iter().map(serde_json::to_value);
         let all: Result<Vec<_>, _> = usable.chain(hidden.iter().map(serde_json::to_value)).collect();
-        let json = all.and_then(|all| serde_json::to_string_pretty(&all));
-        let json = json.map_err(|e| Failure::new(OUTPUT, e.to_string()))?;
-        outln!("{json}");
+        out!("{}", json(&all.map_err(|error| Failure::new(OUTPUT, error.to_string()))?)?);
     } else {
         const MIB: u64 = 1 << 20;
         for device in &devices {
@@ -61,7 +53,7 @@ fn print(args: &Args) -> Result<(), Failure> {
         }
     }
     if devices.is_empty() {
-        return Err(Failure::new(NO_DEVICE, Error::none_found().to_string()));
+        return Err(Error::none_found().into());
     }
     Ok(())
 }

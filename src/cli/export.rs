@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::failure::{Failure, OK, SCENE, USAGE};
+use super::failure::{Failure, SCENE, USAGE};
 use super::files::save;
 use super::guard::Guard;
 use super::input::Loaded;
@@ -27,14 +27,7 @@ pub(super) struct Args {
     output: PathBuf,
 }
 
-pub(super) fn run(args: &Args) -> u8 {
-    match run_export(args) {
-        Ok(()) => OK,
-        Err(failure) => failure.report(),
-    }
-}
-
-fn run_export(args: &Args) -> Result<(), Failure> {
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
     Guard::new([&args.scene]).options([("--output", &Some(args.output.clone()))])?;
     let mut loaded = Loaded::read(&args.scene, false)?;
     args.picture.resize(&mut loaded.scene);

@@ -35,11 +35,18 @@ pub(super) struct Failure {
     pub code: u8,
     /// What to tell the user; empty where that is done already.
     pub message: String,
+    /// What `--device cpu` would do about it, where the command takes that.
+    cpu: Option<&'static str>,
 }
 
 impl Failure {
     pub(super) fn new(code: u8, message: impl Into<String>) -> Self {
-        Self { code, message: message.into() }
+        Self { code, message: message.into(), cpu: None }
+    }
+
+    /// The same, of a command that needs a device.
+    pub(super) fn without_cpu(self) -> Self {
+        Self { cpu: None, ..self }
     }
 
     /// The same, said of one of several inputs.
@@ -52,6 +59,9 @@ impl Failure {
         if !self.message.is_empty() {
             // Messages hold names that somebody else chose.
             errln!("trueray: {}", visible_lines(&self.message));
+        }
+        if let Some(help) = self.cpu {
+            errln!("  help: `--device cpu` {help}");
         }
         self.code
     }
@@ -81,7 +91,13 @@ impl From<gpu::Error> for Failure {
             Error::Lost(_) | Error::Shader(_) | Error::Wrong(_) | Error::OtherPicture { .. } => DEVICE_LOST,
             Error::Misuse(_) => USAGE,
         };
-        Self::new(code, error.to_string())
+        let cpu = match &error {
+            Error::NoneFound(_) => Some("renders without any"),
+            Error::TooLarge { .. } | Error::OutOfRange { .. } | Error::Cut { .. } => Some("has no such limit"),
+            Error::ArithmeticRefused { .. } => Some("needs none"),
+            _ => None,
+        };
+        Self { cpu, ..Self::new(code, error.to_string()) }
     }
 }
 

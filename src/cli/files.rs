@@ -1,10 +1,12 @@
 //! What subcommands that measure write: reports, tables and data.
 
+use std::ffi::OsStr;
 use std::path::Path;
 
 use serde::Serialize;
 
 use super::failure::{Failure, OUTPUT};
+use crate::atomic::folder_of;
 use crate::film::Target;
 
 /// The command line as it was given, with the program's plain name; arguments with blanks or quotes are quoted.
@@ -21,20 +23,23 @@ pub(super) fn command() -> String {
     std::iter::once("trueray".to_owned()).chain(arguments).collect::<Vec<_>>().join(" ")
 }
 
-/// The folder that a file is in.
-pub(super) fn folder_of(path: &Path) -> &Path {
-    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
-}
+/// Bytes of a file's name at the most, on the file systems in use.
+const LONGEST_NAME: usize = 255;
 
 /// Whether a file can be there at all: what cannot be written should be known before minutes of measuring.
-pub(super) fn check_folder(path: &Path) -> Result<(), Failure> {
+pub(super) fn check_place(path: &Path) -> Result<(), Failure> {
     let folder = folder_of(path);
-    if path.is_dir() || !folder.is_dir() {
-        let what =
-            if path.is_dir() { "that is a folder".into() } else { format!("there is no folder {}", folder.display()) };
-        return Err(Failure::new(OUTPUT, format!("cannot write {}: {what}", path.display())));
-    }
-    Ok(())
+    let length = path.file_name().map_or(0, OsStr::len);
+    let what = if path.is_dir() {
+        "that is a folder".into()
+    } else if length > LONGEST_NAME {
+        format!("its name has {length} bytes, and file systems take {LONGEST_NAME}")
+    } else if !folder.is_dir() {
+        format!("there is no folder {}", folder.display())
+    } else {
+        return Ok(());
+    };
+    Err(Failure::new(OUTPUT, format!("cannot write {}: {what}", path.display())))
 }
 
 /// Writes a text to a file, complete or not at all, or to standard output.

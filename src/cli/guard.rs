@@ -6,7 +6,8 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::failure::{Failure, OUTPUT};
-use super::files::{check_folder, folder_of};
+use super::files::check_place;
+use crate::atomic::folder_of;
 
 /// The files that a run reads and writes.
 #[derive(Debug, Default)]
@@ -64,7 +65,7 @@ impl Guard {
     ) -> Result<(), Failure> {
         let named = outputs.into_iter().filter_map(|(what, path)| Some((what, path.as_deref()?)));
         named.into_iter().try_for_each(|(what, path)| {
-            check_folder(path)?;
+            check_place(path)?;
             self.output(what, path)
         })
     }

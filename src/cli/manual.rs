@@ -4,7 +4,7 @@ use clap::Command;
 use clap_complete::Shell;
 use clap_mangen::Man;
 
-use super::failure::{Failure, OK, OUTPUT, USAGE};
+use super::failure::{Failure, OUTPUT, USAGE};
 use super::output::out;
 use crate::words::visible;
 
@@ -24,24 +24,13 @@ pub(super) struct ManArgs {
     command: Option<String>,
 }
 
-pub(super) fn completions(args: &CompletionsArgs, mut cli: Command) -> u8 {
+pub(super) fn completions(args: &CompletionsArgs, mut cli: Command) {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut cli, "trueray", &mut script);
     out!("{}", String::from_utf8_lossy(&script));
-    OK
 }
 
-pub(super) fn man(args: &ManArgs, cli: Command) -> u8 {
-    match page(args, cli) {
-        Ok(page) => {
-            out!("{page}");
-            OK
-        }
-        Err(failure) => failure.report(),
-    }
-}
-
-fn page(args: &ManArgs, mut cli: Command) -> Result<String, Failure> {
+pub(super) fn man(args: &ManArgs, mut cli: Command) -> Result<(), Failure> {
     // Only then do commands know their full names and the options that all share.
     cli.build();
     let command = match &args.command {
@@ -52,5 +41,7 @@ fn page(args: &ManArgs, mut cli: Command) -> Result<String, Failure> {
     };
     let mut page = Vec::new();
     Man::new(command.clone()).render(&mut page).map_err(|error| Failure::new(OUTPUT, error.to_string()))?;
-    Ok(String::from_utf8_lossy(&page).into_owned())
+    // The last section is of lines, as --version prints them.
+    out!("{}", String::from_utf8_lossy(&page).replace(".SH VERSION\n", ".SH VERSION\n.nf\n"));
+    Ok(())
 }

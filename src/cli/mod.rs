@@ -109,8 +109,11 @@ pub fn run() -> ExitCode {
     environment::prepare();
     // What is wrong with the arguments is coloured as they ask for, too.
     let (color, arguments) = color::of_arguments(std::env::args_os());
-    let matches = Cli::command().color(color.into()).get_matches_from(arguments);
-    let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+    let matches = Cli::command().color(color.into()).try_get_matches_from(arguments);
+    let cli = match matches.and_then(|matches| Cli::from_arg_matches(&matches)) {
+        Ok(cli) => cli,
+        Err(error) => return say_instead(&error),
+    };
     color.choose();
     threads::make_pool();
     if let Err(error) = signals::watch() {
@@ -121,26 +124,36 @@ pub fn run() -> ExitCode {
     if let Err(failure) = watchdog::watch(lost) {
         return failure.report().into();
     }
-    let code = match cli.command {
-        None => match meant_command(cli.render.first_scene()) {
-            Some(failure) => failure.report(),
-            None => render::run(&cli.render),
-        },
+    let ok = |()| failure::OK;
+    let ended = match cli.command {
+        None => meant_command(cli.render.first_scene()).map_or_else(|| render::run(&cli.render), Err),
         Some(Command::Render(args)) => render::run(&args),
-        Some(Command::Compare(args)) => compare::run(&args),
+        Some(Command::Compare(args)) => Ok(compare::run(&args)),
         Some(Command::Check(args)) => check::run(&args),
-        Some(Command::Study(args)) => study::run(&args),
-        Some(Command::Stress(args)) => stress::run(&args),
-        Some(Command::Bench(args)) => bench::run(&args),
-        Some(Command::Export(args)) => export::run(&args),
+        Some(Command::Study(args)) => study::run(&args).map(ok),
+        Some(Command::Stress(args)) => stress::run(&args).map_err(Failure::without_cpu),
+        Some(Command::Bench(args)) => bench::run(&args).map(ok),
+        Some(Command::Export(args)) => export::run(&args).map(ok),
         #[cfg(feature = "view")]
-        Some(Command::View(args)) => view::run(&args),
-        Some(Command::Devices(args)) => devices::run(&args),
-        Some(Command::Shader(args)) => shader::run(&args),
-        Some(Command::Completions(args)) => manual::completions(&args, Cli::command()),
-        Some(Command::Man(args)) => manual::man(&args, Cli::command()),
+        Some(Command::View(args)) => view::run(&args).map(ok),
+        Some(Command::Devices(args)) => devices::run(&args).map(ok),
+        Some(Command::Shader(args)) => shader::run(&args).map(ok).map_err(Failure::without_cpu),
+        Some(Command::Completions(args)) => {
+            manual::completions(&args, Cli::command());
+            Ok(failure::OK)
+        }
+        Some(Command::Man(args)) => manual::man(&args, Cli::command()).map(ok),
     };
-    ExitCode::from(code)
+    ended.unwrap_or_else(|failure| failure.report()).into()
+}
+
+/// Prints what is asked for in place of a run, as by `--help`, or what is wrong with the arguments.
+fn say_instead(said: &clap::Error) -> ExitCode {
+    let printed = said.print();
+    if !said.use_stderr() {
+        output::end_unless(printed);
+    }
+    u8::try_from(said.exit_code()).unwrap_or(failure::USAGE).into()
 }
 
 /// How many letters a mistyped command may be off by.
@@ -150,7 +163,7 @@ const SLIPS: usize = 2;
 fn meant_command(first: Option<&Path>) -> Option<Failure> {
     let word = first.filter(|path| !path.exists())?.to_str()?;
     let cli = Cli::command();
-    let distance = |name: &str| words::slips(word.to_ascii_lowercase().as_bytes(), name.as_bytes());
+    let distance = |name: &str| words::slips(word.to_ascii_lowercase().as_bytes(), name);
     let nearest =
         cli.get_subcommands().map(|command| (distance(command.get_name()), command)).min_by_key(|pair| pair.0);
     // Of a short word every other is near.

@@ -5,6 +5,7 @@ use std::io::Read;
 use std::path::Path;
 
 use super::failure::{Failure, OUTPUT, USAGE};
+use crate::atomic::folder_of;
 use crate::film::Format;
 use crate::words::is_hidden;
 
@@ -60,7 +61,7 @@ pub(super) fn check_named(path: &Path) -> Result<(), Failure> {
 }
 
 fn leaves_its_folder(link: &Path) -> bool {
-    let folder = super::files::folder_of(link).canonicalize().ok();
+    let folder = folder_of(link).canonicalize().ok();
     link.canonicalize().ok().as_deref().and_then(Path::parent) != folder.as_deref()
 }
 

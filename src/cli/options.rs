@@ -69,24 +69,17 @@ struct CameraOptions {
 impl PictureOptions {
     /// Fails where the camera options define no view.
     pub(super) fn settings(&self) -> Result<Settings, Failure> {
-        let mut settings = self.convention.settings();
-        if let Some(sampling) = self.sampling {
-            settings.sampling = sampling;
-        }
-        if let Some(quantize) = self.quantize {
-            settings.quantize = quantize;
-        }
-        if let Some(secondary) = self.secondary_epsilon {
-            settings.secondary = secondary;
-        }
-        if let Some(specular) = self.specular {
-            settings.specular = specular;
-        }
-        settings.max_depth = self.max_depth;
-        settings.samples_per_side = self.samples_per_side;
+        let base = self.convention.settings();
         let CameraOptions { eye, look_at, up } = self.camera;
-        settings.view = View::new(eye, look_at, up).map_err(|error| Failure::new(USAGE, error.to_string()))?;
-        Ok(settings)
+        Ok(Settings {
+            view: View::new(eye, look_at, up).map_err(|error| Failure::new(USAGE, error.to_string()))?,
+            sampling: self.sampling.unwrap_or(base.sampling),
+            quantize: self.quantize.unwrap_or(base.quantize),
+            secondary: self.secondary_epsilon.unwrap_or(base.secondary),
+            specular: self.specular.unwrap_or(base.specular),
+            max_depth: self.max_depth,
+            samples_per_side: self.samples_per_side,
+        })
     }
 
     /// What a page of `trueray view` starts with.

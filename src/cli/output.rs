@@ -5,10 +5,15 @@ use std::io::{self, ErrorKind, Write};
 
 use super::failure::OUTPUT;
 
-/// Prints to standard output. A closed pipe is ignored, so that exit codes keep their meaning; a full disk ends the program.
+/// Prints to standard output.
 pub(super) fn to_stdout(text: Arguments) {
-    let written = io::stdout().lock().write_fmt(text).and_then(|()| io::stdout().flush());
-    if let Err(error) = written
+    end_unless(io::stdout().lock().write_fmt(text));
+}
+
+/// Ends the program where standard output was not `written`, as on a full disk. A closed pipe is ignored, so that exit codes keep
+/// their meaning.
+pub(super) fn end_unless(written: io::Result<()>) {
+    if let Err(error) = written.and_then(|()| io::stdout().flush())
         && error.kind() != ErrorKind::BrokenPipe
     {
         to_stderr(format_args!("trueray: cannot write standard output: {error}\n"));

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use super::failure::{Failure, OK, USAGE};
-use super::files::{check_folder, json, save};
+use super::files::{check_place, json, save};
 use super::guard::Guard;
 use super::input::{Loaded, print_doubts};
 use super::named::{check_named, format_by_ending};
@@ -73,13 +73,6 @@ pub(super) struct Args {
     verbose: bool,
 }
 
-pub(super) fn run(args: &Args) -> u8 {
-    match render_all(args) {
-        Ok(code) => code,
-        Err(failure) => failure.report(),
-    }
-}
-
 /// A scene and where its picture goes.
 struct Job {
     loaded: Loaded,
@@ -88,14 +81,14 @@ struct Job {
 }
 
 /// Renders every scene; a scene with errors does not keep the others from being rendered, files that are in each other's way do.
-fn render_all(args: &Args) -> Result<u8, Failure> {
+pub(super) fn run(args: &Args) -> Result<u8, Failure> {
     if args.scenes.len() > 1 && args.output.as_deref().is_some_and(|output| !output.is_dir()) {
         return Err(Failure::new(USAGE, "several scenes need a folder for -o, or none"));
     }
     let settings = args.picture.settings()?;
     let mut guard = Guard::new(&args.scenes);
     if let Some(path) = args.stats_json.as_deref().filter(|path| *path != Path::new("-")) {
-        check_folder(path)?;
+        check_place(path)?;
         guard.output("--stats-json", path)?;
     }
     // Opening a device takes longer than reading most scenes: both at once, and what else can be done without one. The device is
@@ -315,7 +308,7 @@ fn job(args: &Args, loaded: Loaded, target: Target) -> Result<Job, Failure> {
         if folder(args).is_some() && !args.allow_any_output {
             check_named(path).map_err(|failure| failure.of(&loaded.name))?;
         }
-        check_folder(path)?;
+        check_place(path)?;
     }
     let format = match (args.format, &target) {
         (Some(format), _) => format,

@@ -30,11 +30,6 @@ impl Reports {
         guard.options([("--report", &self.report), ("--csv", &self.csv), ("--json", &self.json)])
     }
 
-    /// The file of `--json`.
-    pub(super) fn json(&self) -> Option<&Path> {
-        self.json.as_deref()
-    }
-
     /// Prints on standard output, unless data goes there.
     pub(super) fn show(&self, text: &str) {
         if ![&self.csv, &self.json].into_iter().flatten().any(|path| path == Path::new("-")) {

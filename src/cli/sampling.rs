@@ -23,9 +23,9 @@ pub(super) struct SamplingOptions {
     /// Sample this part of the pixels, evenly, above 0
     #[arg(long, value_name = "D", value_parser = density, group = "partial")]
     sparse: Option<f64>,
-    /// How the others are filled: by their `nearest` sample, or `smooth`, by a mean of those around
-    #[arg(long, value_name = "HOW", value_enum, default_value_t = FillArg::Nearest, requires = "partial")]
-    fill: FillArg,
+    /// How the others are filled
+    #[arg(long, value_name = "HOW", value_enum, default_value_t = Fill::Nearest, requires = "partial")]
+    fill: Fill,
 }
 
 /// What is sampled of a picture, and how the rest is filled.
@@ -52,11 +52,7 @@ impl SamplingOptions {
         if let Some(why) = Samples::obstacle(size) {
             return Err(Failure::new(USAGE, why));
         }
-        let fill = match self.fill {
-            FillArg::Nearest => Fill::Nearest,
-            FillArg::Smooth => Fill::Smooth,
-        };
-        Ok(Some(Choice { density, fill }))
+        Ok(Some(Choice { density, fill: self.fill }))
     }
 }
 
@@ -81,12 +77,6 @@ impl Choice {
             Fill::Smooth => "a mean of samples around",
         }
     }
-}
-
-#[derive(Debug, Clone, Copy, clap::ValueEnum)]
-enum FillArg {
-    Nearest,
-    Smooth,
 }
 
 /// A coordinate, from the left or from the top.

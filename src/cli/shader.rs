@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::failure::{Failure, OK, USAGE};
+use super::failure::{Failure, USAGE};
 use super::input::Loaded;
 use super::options::{DeviceOptions, PictureOptions, open_device};
 use super::output::out;
@@ -30,14 +30,7 @@ pub(super) struct Args {
     device: DeviceOptions,
 }
 
-pub(super) fn run(args: &Args) -> u8 {
-    match print(args) {
-        Ok(()) => OK,
-        Err(failure) => failure.report(),
-    }
-}
-
-fn print(args: &Args) -> Result<(), Failure> {
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
     if !args.device.uses_vulkan() {
         return Err(Failure::new(USAGE, "the CPU reference runs no shader: `--device cpu` has none to print"));
     }

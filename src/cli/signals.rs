@@ -1,6 +1,8 @@
 //! Signals that end the run: nothing half-written stays, measurements are not lost, and the shell sees which signal it was.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
+
+use crate::threads::lock;
 
 /// Says what there is to say before the process ends; it runs on a thread of its own.
 type LastWords = Box<dyn FnOnce() + Send>;
@@ -9,12 +11,12 @@ static LAST_WORDS: Mutex<Option<LastWords>> = Mutex::new(None);
 
 /// Has `words` said if a signal ends the process from here on.
 pub(super) fn say_last(words: impl FnOnce() + Send + 'static) {
-    *LAST_WORDS.lock().unwrap_or_else(PoisonError::into_inner) = Some(Box::new(words));
+    *lock(&LAST_WORDS) = Some(Box::new(words));
 }
 
 /// From here on there is nothing to say. Where it is being said, the process ends before this returns.
 pub(super) fn say_nothing() {
-    *LAST_WORDS.lock().unwrap_or_else(PoisonError::into_inner) = None;
+    *lock(&LAST_WORDS) = None;
 }
 
 #[cfg(unix)]
@@ -29,8 +31,8 @@ pub(super) fn watch() -> std::io::Result<()> {
 #[cfg(unix)]
 mod unix {
     use std::io;
+    use std::sync::Arc;
     use std::sync::atomic::{AtomicBool, Ordering};
-    use std::sync::{Arc, PoisonError};
     use std::thread;
 
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXCPU, SIGXFSZ};
@@ -53,7 +55,7 @@ mod unix {
         thread::Builder::new().name("signals".into()).spawn(move || {
             if let Some(signal) = signals.forever().next() {
                 is_ending.store(true, Ordering::SeqCst);
-                let mut words = super::LAST_WORDS.lock().unwrap_or_else(PoisonError::into_inner);
+                let mut words = super::lock(&super::LAST_WORDS);
                 if let Some(words) = words.take() {
                     words();
                 }

@@ -1,7 +1,7 @@
 //! `trueray stress`.
 
 use std::str::FromStr;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 use serde::Serialize;
@@ -15,6 +15,7 @@ use super::signals::{say_last, say_nothing};
 use crate::gpu::{Choice, Gpu, Kernel};
 use crate::precision::Tier;
 use crate::stress::{Class, Row, Verdict, classes, cost, run as run_classes, table};
+use crate::threads::lock;
 
 /// Arguments of `trueray stress`.
 #[derive(Debug, clap::Args)]
@@ -89,13 +90,6 @@ impl Report {
     }
 }
 
-pub(super) fn run(args: &Args) -> u8 {
-    match stress(args) {
-        Ok(code) => code,
-        Err(failure) => failure.report(),
-    }
-}
-
 fn selected_classes(names: &[String]) -> Result<Vec<Class>, Failure> {
     let mut all = classes();
     for name in names {
@@ -108,7 +102,7 @@ fn selected_classes(names: &[String]) -> Result<Vec<Class>, Failure> {
     Ok(all)
 }
 
-fn stress(args: &Args) -> Result<u8, Failure> {
+pub(super) fn run(args: &Args) -> Result<u8, Failure> {
     let classes = selected_classes(&args.class)?;
     if args.list {
         for class in &classes {
@@ -185,10 +179,6 @@ fn stress(args: &Args) -> Result<u8, Failure> {
         outln!("{broken} promises broken{too_few}, {seconds:.1} s");
     }
     Ok(if broken == 0 { OK } else { BROKEN })
-}
-
-fn lock(rows: &Mutex<Vec<Row>>) -> MutexGuard<'_, Vec<Row>> {
-    rows.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The cost of a test on each kernel.

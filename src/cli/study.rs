@@ -1,9 +1,9 @@
 //! `trueray study`.
 
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 
-use super::failure::{Failure, OK};
+use super::failure::Failure;
 use super::files::{command, seconds};
 use super::guard::Guard;
 use super::input::Loaded;
@@ -13,7 +13,8 @@ use super::progress::{Progress, Style};
 use super::reports::Reports;
 use super::signals::{say_last, say_nothing};
 use crate::settings::Settings;
-use crate::study::{Error, Event, HardCases, Skipped, Study, StudyInput, StudyPlan, csv, html};
+use crate::study::{Event, HardCases, Skipped, Study, StudyInput, StudyPlan, csv, html};
+use crate::threads::lock;
 use crate::viewed::ViewedScene;
 
 /// Arguments of `trueray study`.
@@ -53,14 +54,7 @@ pub(super) struct Args {
     progress: Style,
 }
 
-pub(super) fn run(args: &Args) -> u8 {
-    match study(args) {
-        Ok(()) => OK,
-        Err(failure) => failure.report(),
-    }
-}
-
-fn study(args: &Args) -> Result<(), Failure> {
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
     args.reports.check(&mut Guard::new(&args.scenes))?;
     let settings = args.picture.settings()?;
     let gpu = args.device.open()?;
@@ -99,7 +93,7 @@ fn study(args: &Args) -> Result<(), Failure> {
             selection: &selection,
         };
         let mut progress = Progress::new(args.progress, &format!("study {} of {parts}", number + 1));
-        let study = crate::study::watched(&input, &plan, |event| match event {
+        let study = crate::study::study(&input, &plan, |event| match event {
             Event::Done(part) => progress.set(part),
             Event::Measured(study) => lock(&results).unfinished = Some(study.clone()),
         })?;
@@ -115,10 +109,6 @@ fn study(args: &Args) -> Result<(), Failure> {
     }
     say_nothing();
     lock(&results).write()
-}
-
-fn lock(results: &Mutex<Results>) -> MutexGuard<'_, Results> {
-    results.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// What has been measured, and where it goes.
@@ -179,14 +169,5 @@ fn rays(text: &str) -> Result<usize, String> {
     match text.parse() {
         Ok(rays @ (0 | 64..=2_000_000)) => Ok(rays),
         _ => Err("expected 0 or a number from 64 to 2000000".into()),
-    }
-}
-
-impl From<Error> for Failure {
-    fn from(error: Error) -> Self {
-        match error {
-            Error::Device(error) => error.into(),
-            Error::Picture(error) => Self::new(super::failure::SCENE, error.to_string()),
-        }
     }
 }

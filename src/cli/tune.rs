@@ -1,11 +1,9 @@
 //! `trueray bench --tune`.
 
-use std::path::Path;
-
 use super::failure::{Failure, OUTPUT, USAGE};
-use super::files::{command, save_json};
+use super::files::command;
 use super::options::{DeviceOptions, PictureOptions, open_device};
-use super::output::out;
+use super::reports::Reports;
 use crate::bench::{TunePlan, tune};
 use crate::gpu::{Choice, Gpu, USUAL_KERNELS};
 use crate::tuning::save;
@@ -18,7 +16,7 @@ pub(super) fn run_tune(
     device: &DeviceOptions,
     max_spheres: usize,
     runs: usize,
-    json: Option<&Path>,
+    reports: &Reports,
 ) -> Result<(), Failure> {
     let choice = match &device.device {
         Choice::Cpu => {
@@ -40,25 +38,18 @@ pub(super) fn run_tune(
             (effects, tier)
         },
     };
-    let table_on_stdout = json != Some(Path::new("-"));
-    let show = |text: &str| {
-        if table_on_stdout {
-            out!("{text}");
-        }
-    };
     let measured = count(runs as u64, "run");
-    show(&format!("{}: medians of {measured} a scene, compilation not counted\n", gpu.device.info));
-    let result = tune(&mut gpu, &plan, |knob| show(&knob.report()))?;
+    reports.show(&format!("{}: medians of {measured} a scene, compilation not counted\n", gpu.device.info));
+    let result = tune(&mut gpu, &plan, |knob| reports.show(&knob.report()))?;
     let file = save(&gpu.device.info.name, &gpu.device.info.driver, result.after)?;
     let difference = result.after.difference(&result.before);
     let found = if difference.is_empty() { "nothing is better than what the class has".into() } else { difference };
     match &file {
-        Some(file) => show(&format!("{found}; kept in {}\n", file.display())),
-        None => show(&format!("{found}\n")),
+        Some(file) => reports.show(&format!("{found}; kept in {}\n", file.display())),
+        None => reports.show(&format!("{found}\n")),
     }
-    if let Some(path) = json {
-        save_json(path, &serde_json::json!({ "command": command(), "tune": result, "file": file }))?;
-    }
+    let json = || serde_json::json!({ "command": command(), "tune": result, "file": file });
+    reports.write(String::new, String::new, json)?;
     match file {
         Some(_) => Ok(()),
         None => Err(Failure::new(

@@ -4,7 +4,7 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::failure::{Failure, NO_THREAD, OK, OUTPUT, USAGE};
+use super::failure::{Failure, NO_THREAD, OUTPUT, USAGE};
 use super::input::Loaded;
 use super::options::{DeviceOptions, PictureOptions};
 use super::output::{errln, outln};
@@ -31,14 +31,7 @@ pub(super) struct Args {
     quiet: bool,
 }
 
-pub(super) fn run(args: &Args) -> u8 {
-    match view(args) {
-        Ok(()) => OK,
-        Err(failure) => failure.report(),
-    }
-}
-
-fn view(args: &Args) -> Result<(), Failure> {
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
     if args.scene.as_os_str() == "-" {
         return Err(Failure::new(USAGE, "a scene that is to be watched must be a file"));
     }

@@ -308,16 +308,6 @@ pub enum Verdict {
     Different,
 }
 
-impl Verdict {
-    /// 0 for pictures that pass, 1 for those that do not, as `cmp` has it.
-    pub fn exit_code(self) -> u8 {
-        match self {
-            Self::Same | Self::WithinLimits => 0,
-            Self::Different => 1,
-        }
-    }
-}
-
 impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.pad(match self {

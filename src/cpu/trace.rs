@@ -1,4 +1,4 @@
-//! A pixel's colour: the primary ray and its chain of reflections; read it beside `shaders/see.wgsl` and
+//! A pixel's colour: the primary ray and its chain of reflections; read it beside `shaders/trace.wgsl` and
 //! `shaders/path_in_place.wgsl`.
 
 use super::intersect::{Hit, Primary, Ray, nearest_secondary, nearest_seen};

@@ -88,9 +88,11 @@ pub fn export(scene: &Scene, settings: &Settings, effects: &Effects, peer: Peer)
     if !obstacles.is_empty() {
         return Err(obstacles);
     }
-    let text = match peer {
-        Peer::PovRay => povray::write(scene, settings, effects),
-        Peer::Tachyon => tachyon::write(scene, settings, effects),
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let _ = match peer {
+        Peer::PovRay => povray::write(&mut text, scene, settings, effects),
+        Peer::Tachyon => tachyon::write(&mut text, scene, settings, effects),
     };
     Ok(Export { text, warnings })
 }

@@ -27,14 +27,7 @@ impl fmt::Display for Triple {
     }
 }
 
-pub(super) fn write(scene: &Scene, settings: &Settings, effects: &Effects) -> String {
-    let mut text = String::new();
-    // Writing to a string cannot fail.
-    let _ = write_scene(&mut text, scene, settings, effects);
-    text
-}
-
-fn write_scene(text: &mut String, scene: &Scene, settings: &Settings, effects: &Effects) -> fmt::Result {
+pub(super) fn write(text: &mut String, scene: &Scene, settings: &Settings, effects: &Effects) -> fmt::Result {
     let Scene { width, height, background, ambient, .. } = scene;
     let [left, right, bottom, top] = window(scene, settings, SAMPLE);
     let direction = DVec3::new(f64::midpoint(left, right), f64::midpoint(bottom, top), -1.0);

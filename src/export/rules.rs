@@ -87,10 +87,10 @@ impl Found<'_> {
         let Scene { spheres, sphere_names, .. } = self.scene;
         let mut indices = (0..spheres.len()).filter(|&index| property(&spheres[index]));
         let first = indices.next()?;
-        let name = sphere_names.shown(first);
+        let name = sphere_names.in_words("sphere", first);
         Some(match indices.count() {
-            0 => format!("sphere '{name}'"),
-            more => format!("sphere '{name}' and {more} more"),
+            0 => name,
+            more => format!("{name} and {more} more"),
         })
     }
 
@@ -134,9 +134,9 @@ impl Found<'_> {
         }
         let shapes = shape_indices(&self.scene.spheres, true).unwrap_or_default();
         if let Some(twin) = shapes.iter().enumerate().position(|(index, &first)| index != first as usize) {
-            let name = self.scene.sphere_names.shown(twin);
+            let name = self.scene.sphere_names.in_words("sphere", twin);
             self.warnings.push(format!(
-                "sphere '{name}' has the place and size of another one: here the first in the file is seen, {} may choose the other",
+                "{name} has the place and size of another one: here the first in the file is seen, {} may choose the other",
                 self.peer
             ));
         }

@@ -47,7 +47,7 @@ impl Picture {
         }
     }
 
-    /// A picture whose parts were computed from other pictures, so that they fit by construction.
+    /// A picture of samples that were rendered for its sides, or computed from other pictures: they fit by construction.
     pub(crate) fn assemble(width: u32, height: u32, rgb: Vec<u8>) -> Self {
         debug_assert_eq!(rgb.len() as u64, width as u64 * height as u64 * 3);
         Self { width, height, rgb }
@@ -239,25 +239,11 @@ impl fmt::Display for Format {
 }
 
 impl FromStr for Format {
-    type Err = UnknownFormat;
+    type Err = String;
 
     /// Reads `p6`, `p3` or `png`, in any case.
-    fn from_str(name: &str) -> Result<Self, UnknownFormat> {
-        Self::ALL
-            .into_iter()
-            .find(|format| format.name().eq_ignore_ascii_case(name))
-            .ok_or_else(|| UnknownFormat(name.to_owned()))
+    fn from_str(name: &str) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|format| format.name().eq_ignore_ascii_case(name));
+        found.ok_or_else(|| format!("`{name}` is no picture format; there are p6, p3 and png"))
     }
 }
-
-/// A name that is none of [`Format`]'s.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct UnknownFormat(pub String);
-
-impl fmt::Display for UnknownFormat {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "`{}` is no picture format; there are p6, p3 and png", self.0)
-    }
-}
-
-impl std::error::Error for UnknownFormat {}

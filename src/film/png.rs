@@ -1,8 +1,9 @@
 //! Reading PNG: all kinds of pixels become 8-bit RGB, and what surrounds them is looked at more closely than decoders do.
 
+use std::fmt::Display;
 use std::io::Cursor;
 
-use png::{BitDepth, ColorType, Decoder, DecodingError, Reader, Transformations};
+use png::{BitDepth, ColorType, Decoder, Reader, Transformations};
 
 use super::problem::{Problem, Warning};
 use super::read::{Leniency, Reading};
@@ -32,7 +33,7 @@ pub(super) fn size(bytes: &[u8]) -> Result<(u32, u32), Problem> {
     let number = |at: usize| bytes.get(at..at + 4).and_then(|field| field.try_into().ok()).map(u32::from_be_bytes);
     // The first chunk is IHDR; where it is not, the decoder finds out before it allocates anything.
     let (Some(width), Some(height), Some(&[depth, color])) = (number(16), number(20), bytes.get(24..26)) else {
-        return Err(Problem::Png("the file ends within its header".into()));
+        return Err(damaged("the file ends within its header"));
     };
     let channels: u64 = match color {
         2 => 3,
@@ -42,21 +43,23 @@ pub(super) fn size(bytes: &[u8]) -> Result<(u32, u32), Problem> {
     };
     let bits = u128::from(width) * u128::from(height) * u128::from(channels * u64::from(depth));
     if bits > bytes.len() as u128 * DEFLATE_RATIO * 8 {
-        return Err(Problem::TooLarge { width, height });
+        return Err(Problem::too_large(width, height));
     }
     if u64::from(width) * u64::from(height) > MAX_PIXELS {
-        return Err(Problem::TooManyPixels { width, height, most: MAX_PIXELS });
+        return Err(Problem::fatal(format!(
+            "the header promises {width}x{height} pixels; at most {MAX_PIXELS} are read"
+        )));
     }
     // Decoders differ in what they make of it, and one panics.
     if let Some(length) = Chunks::of(bytes).palette.filter(|length| !length.is_multiple_of(3)) {
-        return Err(Problem::Png(format!("the palette has {}, not 3 for each colour", count(length as u64, "byte"))));
+        return Err(damaged(format!("the palette has {}, not 3 for each colour", count(length as u64, "byte"))));
     }
     Ok((width, height))
 }
 
 pub(super) fn decode(bytes: &[u8], leniency: Leniency) -> Result<Reading, Problem> {
     let (width, height) = size(bytes)?;
-    sample_count(width, height).map_err(|wrong| Problem::Png(wrong.to_string()))?;
+    sample_count(width, height).map_err(damaged)?;
     let chunks = Chunks::of(bytes);
     let repaired;
     // What is whole of a file that is cut off can still hold all pixels.
@@ -69,12 +72,14 @@ pub(super) fn decode(bytes: &[u8], leniency: Leniency) -> Result<Reading, Proble
     // A decoder's panic is a damaged file like any other.
     let decoded = panics::caught(|| pixels(whole, width, height, leniency));
     let (rgb, mut warnings) =
-        decoded.map_err(|why| Problem::Png(format!("the decoder cannot make sense of it ({why})")))??;
+        decoded.map_err(|why| damaged(format!("the decoder cannot make sense of it ({why})")))??;
     let end = if !chunks.ends {
-        Some((Problem::PngCutOff, Warning::PngCutOff))
+        let why = "the PNG is cut off after its pixels: it does not end with its IEND chunk";
+        Some((Problem::mendable(why), Warning::PngCutOff))
     } else if chunks.length < bytes.len() {
         let bytes = (bytes.len() - chunks.length) as u64;
-        Some((Problem::PngTrailing { bytes }, Warning::PngTrailing { bytes }))
+        let why = format!("data after the end of the PNG: {}", count(bytes, "byte"));
+        Some((Problem::mendable(why), Warning::PngTrailing { bytes }))
     } else {
         None
     };
@@ -121,8 +126,8 @@ impl Chunks {
     }
 }
 
-fn damaged(error: &DecodingError) -> Problem {
-    Problem::Png(error.to_string())
+fn damaged(why: impl Display) -> Problem {
+    Problem::fatal(format!("damaged PNG: {why}"))
 }
 
 /// All samples in 8-bit RGB, and what was lost on the way.
@@ -133,25 +138,26 @@ fn pixels(bytes: &[u8], width: u32, height: u32, leniency: Leniency) -> Result<(
     decoder.set_transformations(Transformations::IDENTITY);
     decoder.set_ignore_text_chunk(true);
     decoder.set_ignore_iccp_chunk(true);
-    let mut reader = decoder.read_info().map_err(|error| damaged(&error))?;
+    let mut reader = decoder.read_info().map_err(damaged)?;
     let mut rows = Rows::of(&reader, width, leniency)?;
     let samples = width as usize * height as usize * 3;
-    rows.rgb.try_reserve_exact(samples).map_err(|_| Problem::OutOfMemory { width, height })?;
+    let out_of_memory = || Problem::fatal(format!("there is no memory for {width}x{height} pixels"));
+    rows.rgb.try_reserve_exact(samples).map_err(|_| out_of_memory())?;
     if reader.info().interlaced {
-        let size = reader.output_buffer_size().ok_or(Problem::OutOfMemory { width, height })?;
+        let size = reader.output_buffer_size().ok_or_else(out_of_memory)?;
         let mut raw = Vec::new();
-        raw.try_reserve_exact(size).map_err(|_| Problem::OutOfMemory { width, height })?;
+        raw.try_reserve_exact(size).map_err(|_| out_of_memory())?;
         raw.resize(size, 0);
-        let line = reader.next_frame(&mut raw).map_err(|error| damaged(&error))?.line_size;
+        let line = reader.next_frame(&mut raw).map_err(damaged)?.line_size;
         raw.chunks_exact(line).try_for_each(|row| rows.add(row))?;
     } else {
-        while let Some(row) = reader.next_row().map_err(|error| damaged(&error))? {
+        while let Some(row) = reader.next_row().map_err(damaged)? {
             rows.add(row.data())?;
         }
     }
-    reader.finish().map_err(|error| damaged(&error))?;
+    reader.finish().map_err(damaged)?;
     if rows.rgb.len() != samples {
-        return Err(Problem::Png("rows are missing".into()));
+        return Err(damaged("rows are missing"));
     }
     Ok((rows.rgb, rows.warnings))
 }
@@ -206,7 +212,7 @@ impl Rows {
         let mut warnings = Vec::new();
         if depth == 16 {
             if leniency == Leniency::Strict {
-                return Err(Problem::Lossy("the PNG has 16 bits a channel; pictures here have 8".into()));
+                return Err(Problem::mendable("the PNG has 16 bits a channel; pictures here have 8"));
             }
             warnings.push(Warning::Scaled { maximum: 65535 });
         }
@@ -266,13 +272,13 @@ impl Rows {
 
     fn beyond_palette(&self, x: usize, index: usize, colors: usize) -> Problem {
         let y = self.rgb.len() / (3 * self.width);
-        Problem::Png(format!("the pixel at x {x}, y {y} has index {index} in a palette of {colors} colours"))
+        damaged(format!("the pixel at x {x}, y {y} has index {index} in a palette of {colors} colours"))
     }
 
     /// Takes note of a pixel that is not opaque, just added.
     fn see_through(&mut self, x: usize) -> Result<(), Problem> {
         if self.leniency == Leniency::Strict {
-            return Err(Problem::Lossy(format!("the pixel at x {x}, y {} is not opaque", self.row_number())));
+            return Err(Problem::mendable(format!("the pixel at x {x}, y {} is not opaque", self.row_number())));
         }
         match self.warnings.last_mut() {
             Some(Warning::AlphaDropped { pixels }) => *pixels += 1,

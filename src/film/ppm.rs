@@ -22,7 +22,7 @@ pub(super) fn decode(bytes: Vec<u8>, leniency: Leniency) -> Result<Reading, Prob
     let header = Header::read(&mut scanner)?;
     if header.maximum > 255 && leniency == Leniency::Strict {
         let message = format!("samples up to {} take 16 bits; pictures here have 8 bits a channel", header.maximum);
-        return Err(Problem::Lossy(message));
+        return Err(Problem::mendable(message));
     }
     let mut tally = Tally { header: &header, leniency, warnings: Vec::new(), clamped: None };
     let rgb = if header.plain {
@@ -49,14 +49,14 @@ impl Header {
         let plain = scanner.bytes.get(1) == Some(&b'3');
         scanner.at = 2;
         if scanner.peek().is_some_and(|byte| !ends_token(byte)) {
-            return Err(header_error(1, "white space must follow the P3 or P6".into()));
+            return Err(header_error(1, "white space must follow the P3 or P6"));
         }
         let (width, line) = scanner.header_number("width")?;
         let (height, _) = scanner.header_number("height")?;
-        let samples = sample_count(width, height).map_err(|wrong| header_error(line, wrong.to_string()))?;
+        let samples = sample_count(width, height).map_err(|wrong| header_error(line, &wrong.to_string()))?;
         let (maximum, line) = scanner.header_number("maximum")?;
         if !(1..=65535).contains(&maximum) {
-            return Err(header_error(line, format!("the maximum is {maximum}; it must be 1 to 65535")));
+            return Err(header_error(line, &format!("the maximum is {maximum}; it must be 1 to 65535")));
         }
         if !plain {
             // Exactly one byte of white space, be it that of a comment: the next may already be a sample.
@@ -72,14 +72,20 @@ impl Header {
         SamplePosition::new(index as u64, self.width)
     }
 
+    /// What is wrong with a sample, in words.
+    fn wrong_sample(&self, place: FilePosition, index: usize, found: &str) -> String {
+        let (sample, maximum) = (self.position(index), self.maximum);
+        format!("{place}: {sample} is {found}; samples are whole numbers from 0 to {maximum}")
+    }
+
     /// A sample in range, from 0…maximum to 0…255.
     fn scale(&self, value: u32) -> u8 {
         if self.maximum == 255 { value as u8 } else { ((value * 255 + self.maximum / 2) / self.maximum) as u8 }
     }
 }
 
-fn header_error(line: u64, message: String) -> Problem {
-    Problem::Header { line, message }
+fn header_error(line: u64, message: &str) -> Problem {
+    Problem::fatal(format!("line {line}: {message}"))
 }
 
 /// C's `isspace` knows it, Rust's `is_ascii_whitespace` does not.
@@ -138,13 +144,13 @@ impl<'a> Scanner<'a> {
 
     fn header_number(&mut self, name: &str) -> Result<(u32, u64), Problem> {
         let Some(token) = self.token() else {
-            return Err(header_error(self.line, format!("the file ends where the {name} should stand")));
+            return Err(header_error(self.line, &format!("the file ends where the {name} should stand")));
         };
         match number(token) {
             Number::Value(value) => Ok((value, self.line)),
             Number::Negative | Number::Huge | Number::None => {
                 let message = format!("the {name} is {}; it must be a whole number", excerpt(token));
-                Err(header_error(self.line, message))
+                Err(header_error(self.line, &message))
             }
         }
     }
@@ -196,10 +202,10 @@ struct Tally<'a> {
 impl Tally<'_> {
     /// Called for a whole number out of range.
     fn out_of_range(&mut self, place: FilePosition, index: usize, found: String) -> Result<(), Problem> {
-        let (sample, maximum) = (self.header.position(index), self.header.maximum);
         if self.leniency == Leniency::Strict {
-            return Err(Problem::OutOfRange { place, sample, found, maximum });
+            return Err(Problem::mendable(self.header.wrong_sample(place, index, &found)));
         }
+        let sample = self.header.position(index);
         match &mut self.clamped {
             Some(Warning::Clamped { count, .. }) => *count += 1,
             _ => self.clamped = Some(Warning::Clamped { count: 1, place, sample, found }),
@@ -216,10 +222,13 @@ impl Tally<'_> {
         }
         let first = self.header.position(rgb.len());
         if self.leniency == Leniency::Strict {
-            return Err(Problem::Truncated { place, missing: first, expected: expected as u64 });
+            let found = rgb.len();
+            return Err(Problem::mendable(format!(
+                "{place}: the file ends after {found} of {expected} samples; {first} is missing"
+            )));
         }
         if count > MAX_MADE_UP {
-            return Err(Problem::TooLarge { width: self.header.width, height: self.header.height });
+            return Err(Problem::too_large(self.header.width, self.header.height));
         }
         rgb.resize(expected, 0);
         self.warnings.push(Warning::Missing { count: count as u64, first });
@@ -227,9 +236,10 @@ impl Tally<'_> {
     }
 
     /// Called for data after the last sample.
-    fn trailing(&mut self, place: FilePosition, bytes: usize, found: String) -> Result<(), Problem> {
+    fn trailing(&mut self, place: FilePosition, bytes: usize, found: &str) -> Result<(), Problem> {
         if self.leniency == Leniency::Strict {
-            return Err(Problem::Trailing { place, found, expected: self.header.samples as u64 });
+            let expected = self.header.samples;
+            return Err(Problem::mendable(format!("{place}: unexpected {found} after the last of {expected} samples")));
         }
         self.warnings.push(Warning::Trailing { bytes: bytes as u64 });
         Ok(())
@@ -252,7 +262,7 @@ fn plain_samples(scanner: &mut Scanner, tally: &mut Tally) -> Result<Vec<u8>, Pr
     tally.complete(&mut rgb, FilePosition::Line(scanner.line))?;
     if let Some(token) = scanner.token() {
         let bytes = scanner.bytes.len() - (scanner.at - token.len());
-        tally.trailing(FilePosition::Line(scanner.line), bytes, excerpt(token))?;
+        tally.trailing(FilePosition::Line(scanner.line), bytes, &excerpt(token))?;
     }
     Ok(rgb)
 }
@@ -264,8 +274,7 @@ fn plain_sample(token: &[u8], place: FilePosition, index: usize, tally: &mut Tal
         Number::Value(_) | Number::Huge => header.maximum,
         Number::Negative => 0,
         Number::None => {
-            let (sample, maximum) = (header.position(index), header.maximum);
-            return Err(Problem::NotANumber { place, sample, found: excerpt(token), maximum });
+            return Err(Problem::fatal(header.wrong_sample(place, index, &excerpt(token))));
         }
     };
     tally.out_of_range(place, index, excerpt(token))?;
@@ -279,7 +288,8 @@ fn binary_samples(mut bytes: Vec<u8>, mut raster: usize, tally: &mut Tally) -> R
     let length = bytes.len();
     if has_cr_lf_header(&bytes, raster, size) {
         if tally.leniency == Leniency::Strict {
-            return Err(Problem::CrLfHeader);
+            let why = "the header ends in CR LF where one byte is allowed (written in text mode?)";
+            return Err(Problem::mendable(why));
         }
         raster += 1;
         tally.warnings.push(Warning::CrLfHeader);
@@ -287,7 +297,7 @@ fn binary_samples(mut bytes: Vec<u8>, mut raster: usize, tally: &mut Tally) -> R
     let end = raster.saturating_add(size);
     if length > end {
         let excess = length - end;
-        tally.trailing(FilePosition::Byte(end as u64), excess, format!("data ({})", count(excess as u64, "byte")))?;
+        tally.trailing(FilePosition::Byte(end as u64), excess, &format!("data ({})", count(excess as u64, "byte")))?;
         bytes.truncate(end);
     }
     if header.maximum == 255 {

@@ -80,157 +80,44 @@ impl fmt::Display for SamplePosition {
     }
 }
 
-/// Why a file's contents are not a picture.
-#[derive(Debug)]
-#[non_exhaustive]
-pub enum Problem {
-    /// The file could not be read.
-    Io(io::Error),
-    /// The file is neither PPM nor PNG; the text says what it looks like.
-    Unrecognised(String),
-    /// The PPM header is wrong; the text says how.
-    Header {
-        /// Line of the header, counted from 1.
-        line: u64,
-        /// What is wrong in it.
-        message: String,
-    },
-    /// A sample that is a whole number out of range.
-    OutOfRange {
-        /// Where it stands.
-        place: FilePosition,
-        /// Which sample it is.
-        sample: SamplePosition,
-        /// What stands there.
-        found: String,
-        /// The greatest value that the header allows.
-        maximum: u32,
-    },
-    /// A sample that is no whole number.
-    NotANumber {
-        /// Where it stands.
-        place: FilePosition,
-        /// Which sample it is.
-        sample: SamplePosition,
-        /// What stands there.
-        found: String,
-        /// The greatest value that the header allows.
-        maximum: u32,
-    },
-    /// The file ends before its last sample.
-    Truncated {
-        /// Where it ends.
-        place: FilePosition,
-        /// The first sample that is missing.
-        missing: SamplePosition,
-        /// Number of samples that the header promises.
-        expected: u64,
-    },
-    /// Something follows the last sample.
-    Trailing {
-        /// Where it starts.
-        place: FilePosition,
-        /// What it is.
-        found: String,
-        /// Number of samples that the header promises.
-        expected: u64,
-    },
-    /// The header ends in CR LF where one byte is allowed, so that the samples are one byte too many.
-    CrLfHeader,
-    /// A PNG file whose pixels are complete, but which is cut off before its end.
-    PngCutOff,
-    /// Something follows the end of a PNG file.
-    PngTrailing {
-        /// How many bytes.
-        bytes: u64,
-    },
-    /// A valid picture that does not fit into 8-bit RGB without a loss; the text says why.
-    Lossy(String),
-    /// The header promises more samples than the file can hold.
-    TooLarge {
-        /// Pixels in a row, as the header says.
-        width: u32,
-        /// Rows, as the header says.
-        height: u32,
-    },
-    /// More pixels than are decoded at all.
-    TooManyPixels {
-        /// Pixels in a row, as the header says.
-        width: u32,
-        /// Rows, as the header says.
-        height: u32,
-        /// The most that are.
-        most: u64,
-    },
-    /// There is no memory for so many pixels.
-    OutOfMemory {
-        /// Pixels in a row.
-        width: u32,
-        /// Rows.
-        height: u32,
-    },
-    /// A damaged PNG file; the text is the decoder's.
-    Png(String),
+/// Why a file's contents are not a picture, in words that name the place.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Problem {
+    message: String,
+    lenient_helps: bool,
 }
 
 impl Problem {
-    /// Whether [`Leniency::Lenient`](super::Leniency::Lenient) gets over problems of this kind.
+    /// One that nothing gets over.
+    pub(super) fn fatal(message: impl Into<String>) -> Self {
+        Self { message: message.into(), lenient_helps: false }
+    }
+
+    /// One that [`Leniency::Lenient`](super::Leniency::Lenient) gets over.
+    pub(super) fn mendable(message: impl Into<String>) -> Self {
+        Self { message: message.into(), lenient_helps: true }
+    }
+
+    /// A header that promises more samples than the file can hold.
+    pub(super) fn too_large(width: u32, height: u32) -> Self {
+        Self::fatal(format!("the header promises {width}x{height} pixels, more than the file can hold"))
+    }
+
+    /// Whether [`Leniency::Lenient`](super::Leniency::Lenient) gets over it.
     pub fn lenient_helps(&self) -> bool {
-        match self {
-            Self::OutOfRange { .. }
-            | Self::Truncated { .. }
-            | Self::Trailing { .. }
-            | Self::CrLfHeader
-            | Self::PngCutOff
-            | Self::PngTrailing { .. }
-            | Self::Lossy(_) => true,
-            Self::Io(_)
-            | Self::Unrecognised(_)
-            | Self::Header { .. }
-            | Self::NotANumber { .. }
-            | Self::TooLarge { .. }
-            | Self::TooManyPixels { .. }
-            | Self::OutOfMemory { .. }
-            | Self::Png(_) => false,
-        }
+        self.lenient_helps
     }
 }
 
 impl From<io::Error> for Problem {
     fn from(error: io::Error) -> Self {
-        Self::Io(error)
+        Self::fatal(error.to_string())
     }
 }
 
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            Self::Io(error) => error.fmt(f),
-            Self::Header { line, message } => write!(f, "line {line}: {message}"),
-            Self::OutOfRange { place, sample, found, maximum } | Self::NotANumber { place, sample, found, maximum } => {
-                write!(f, "{place}: {sample} is {found}; samples are whole numbers from 0 to {maximum}")
-            }
-            Self::Truncated { place, missing, expected } => {
-                write!(f, "{place}: the file ends after {} of {expected} samples; {missing} is missing", missing.index)
-            }
-            Self::Trailing { place, found, expected } => {
-                write!(f, "{place}: unexpected {found} after the last of {expected} samples")
-            }
-            Self::CrLfHeader => {
-                f.write_str("the header ends in CR LF where one byte is allowed (written in text mode?)")
-            }
-            Self::PngCutOff => f.write_str("the PNG is cut off after its pixels: it does not end with its IEND chunk"),
-            Self::PngTrailing { bytes } => write!(f, "data after the end of the PNG: {}", count(*bytes, "byte")),
-            Self::TooManyPixels { width, height, most } => {
-                write!(f, "the header promises {width}x{height} pixels; at most {most} are read")
-            }
-            Self::OutOfMemory { width, height } => write!(f, "there is no memory for {width}x{height} pixels"),
-            Self::TooLarge { width, height } => {
-                write!(f, "the header promises {width}x{height} pixels, more than the file can hold")
-            }
-            Self::Png(message) => write!(f, "damaged PNG: {message}"),
-            Self::Unrecognised(message) | Self::Lossy(message) => f.write_str(message),
-        }
+        f.write_str(&self.message)
     }
 }
 

@@ -130,5 +130,5 @@ fn recognise(bytes: &[u8]) -> Result<Kind, Problem> {
         [0x89, b'P', b'N', b'G', ..] => "this is PNG with a damaged start (transferred as text?)",
         _ => "no known picture format",
     };
-    Err(Problem::Unrecognised(format!("{looks_like}; {wanted}")))
+    Err(Problem::fatal(format!("{looks_like}; {wanted}")))
 }

@@ -2,7 +2,7 @@
 
 use std::ffi::OsStr;
 use std::fmt;
-use std::fs::{self, File, OpenOptions, Permissions};
+use std::fs::{self, OpenOptions, Permissions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
@@ -10,7 +10,7 @@ use std::sync::{Arc, OnceLock};
 use png::StreamWriter;
 
 use super::{Format, sample_count};
-use crate::atomic::{self, Destination, Part};
+use crate::atomic::{self, Destination, folder_of};
 
 /// Where a picture goes.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -93,9 +93,9 @@ impl std::error::Error for OutputError {}
 /// kept. A symbolic link stays and the file behind it is replaced. What is no regular file (`/dev/null`, a FIFO) is
 /// written to directly, as is standard output.
 pub struct PictureWriter {
-    // Dropped in this order: the encoder closes the temporary file before the placement removes it.
+    // Dropped in this order: the encoder closes the temporary file before the destination removes it.
     encoder: Encoder,
-    placement: Placement,
+    destination: Option<Destination>,
     target: Target,
     failure: Failure,
     missing: u64, // samples
@@ -109,15 +109,12 @@ impl PictureWriter {
     pub fn create(target: &Target, format: Format, width: u32, height: u32) -> Result<Self, OutputError> {
         let error = |source| target.error("create", source);
         let missing = sample_count(width, height).map_err(|wrong| error(invalid(wrong)))? as u64;
-        let (raw, placement) = match target {
-            Target::File(path) => open(path, format.least_bytes(width, height)).map_err(error)?,
-            Target::Stdout => (Raw::Stdout(io::stdout()), Placement::InPlace),
-        };
+        let (raw, destination) = target.open(format.least_bytes(width, height)).map_err(error)?;
         let failure = Failure::default();
         let output = BufWriter::with_capacity(1 << 16, Watched { raw, failure: Arc::clone(&failure) });
         let encoder =
             Encoder::new(format, output, width, height).map_err(|wrapped| error(original(&failure, wrapped)))?;
-        Ok(Self { encoder, placement, target: target.clone(), failure, missing })
+        Ok(Self { encoder, destination, target: target.clone(), failure, missing })
     }
 
     /// Appends RGB samples in reading order; calls may end anywhere, also within a row or a pixel.
@@ -143,7 +140,7 @@ impl PictureWriter {
     /// # Errors
     /// Samples that never came, or whatever the system says; a file that was there before is untouched then.
     pub fn finish(self) -> Result<(), OutputError> {
-        let Self { encoder, placement, target, failure, missing } = self;
+        let Self { encoder, destination, target, failure, missing } = self;
         let error = |source| target.error("finish", source);
         if missing > 0 && failure.get().is_none() {
             return Err(error(invalid(format!("samples missing at the end of the picture: {missing}"))));
@@ -155,7 +152,7 @@ impl PictureWriter {
         if target == Target::Stdout {
             io::stdout().flush().map_err(error)?;
         }
-        placement.settle().map_err(error)
+        destination.map_or(Ok(()), Destination::commit).map_err(error)
     }
 }
 
@@ -173,14 +170,11 @@ impl fmt::Debug for PictureWriter {
 /// # Errors
 /// A folder that does not exist, a file or folder without write permission, or whatever the system says.
 pub fn save_text(target: &Target, text: &str) -> Result<(), OutputError> {
-    let (raw, placement) = match target {
-        Target::File(path) => open(path, text.len() as u64).map_err(|source| target.error("create", source))?,
-        Target::Stdout => (Raw::Stdout(io::stdout()), Placement::InPlace),
-    };
+    let (raw, destination) = target.open(text.len() as u64).map_err(|source| target.error("create", source))?;
     let mut output = Watched { raw, failure: Failure::default() };
     output.write_all(text.as_bytes()).and_then(|()| output.flush()).map_err(|source| target.error("write", source))?;
     drop(output);
-    placement.settle().map_err(|source| target.error("finish", source))
+    destination.map_or(Ok(()), Destination::commit).map_err(|source| target.error("finish", source))
 }
 
 fn invalid(reason: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> io::Error {
@@ -189,23 +183,21 @@ fn invalid(reason: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> io::E
 
 // --- where the bytes go ---------------------------------------------------------------------------------------------
 
-/// What remains to be done with the file once its bytes are complete.
-enum Placement {
-    InPlace,
-    Rename(Destination),
-}
+/// An output, and the place that its file takes once its bytes are complete, where it has not its place yet.
+type Opened = (Box<dyn Write + Send>, Option<Destination>);
 
-impl Placement {
-    fn settle(self) -> io::Result<()> {
+impl Target {
+    /// Opens it for so many bytes or more.
+    fn open(&self, bytes: u64) -> io::Result<Opened> {
         match self {
-            Self::InPlace => Ok(()),
-            Self::Rename(destination) => destination.commit(),
+            Self::File(path) => open(path, bytes),
+            Self::Stdout => Ok((Box::new(io::stdout()), None)),
         }
     }
 }
 
 /// Opens a file for so many bytes or more.
-fn open(path: &Path, bytes: u64) -> io::Result<(Raw, Placement)> {
+fn open(path: &Path, bytes: u64) -> io::Result<Opened> {
     match fs::symlink_metadata(path) {
         Ok(found) if found.is_file() => replace(path, bytes),
         Ok(found) if found.is_symlink() && leads_to_replaceable(path)? => replace(&fs::canonicalize(path)?, bytes),
@@ -214,7 +206,7 @@ fn open(path: &Path, bytes: u64) -> io::Result<(Raw, Placement)> {
         }
         Ok(_) => {
             let file = OpenOptions::new().write(true).create(true).truncate(true).open(path)?;
-            Ok((Raw::File(file), Placement::InPlace))
+            Ok((Box::new(file), None))
         }
         Err(error) if error.kind() == io::ErrorKind::NotFound => create_new(path, bytes),
         Err(error) => Err(error),
@@ -265,13 +257,13 @@ fn ensure_room(_path: &Path, _bytes: u64) -> io::Result<()> {
     Ok(())
 }
 
-fn replace(path: &Path, bytes: u64) -> io::Result<(Raw, Placement)> {
+fn replace(path: &Path, bytes: u64) -> io::Result<Opened> {
     // Renaming needs no write permission on the file itself; ask for it as an ordinary write would.
     let permissions = OpenOptions::new().write(true).open(path)?.metadata()?.permissions();
     temporary_for(path, Some(permissions), bytes)
 }
 
-fn create_new(path: &Path, bytes: u64) -> io::Result<(Raw, Placement)> {
+fn create_new(path: &Path, bytes: u64) -> io::Result<Opened> {
     if path.file_name().is_none() {
         return Err(invalid("that is no file name"));
     }
@@ -282,23 +274,10 @@ fn create_new(path: &Path, bytes: u64) -> io::Result<(Raw, Placement)> {
     temporary_for(path, None, bytes)
 }
 
-fn folder_of(path: &Path) -> &Path {
-    match path.parent() {
-        Some(folder) if folder != "" => folder,
-        _ => Path::new("."),
-    }
-}
-
-fn temporary_for(path: &Path, permissions: Option<Permissions>, bytes: u64) -> io::Result<(Raw, Placement)> {
+fn temporary_for(path: &Path, permissions: Option<Permissions>, bytes: u64) -> io::Result<Opened> {
     ensure_room(path, bytes)?;
     let (part, destination) = atomic::begin(path, permissions)?;
-    Ok((Raw::Part(part), Placement::Rename(destination)))
-}
-
-enum Raw {
-    Part(Part),
-    File(File),
-    Stdout(io::Stdout),
+    Ok((Box::new(part), Some(destination)))
 }
 
 /// The first error of an output.
@@ -307,7 +286,7 @@ type Failure = Arc<OnceLock<io::Error>>;
 /// An output that remembers its first error: the PNG encoder writes its last bytes while it is dropped, where nobody
 /// else would hear of one.
 struct Watched {
-    raw: Raw,
+    raw: Box<dyn Write + Send>,
     failure: Failure,
 }
 
@@ -324,20 +303,12 @@ impl Watched {
 
 impl Write for Watched {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let result = match &mut self.raw {
-            Raw::Part(part) => part.write(bytes),
-            Raw::File(file) => file.write(bytes),
-            Raw::Stdout(stdout) => stdout.write(bytes),
-        };
+        let result = self.raw.write(bytes);
         self.watch(result)
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        let result = match &mut self.raw {
-            Raw::Part(part) => part.flush(),
-            Raw::File(file) => file.flush(),
-            Raw::Stdout(stdout) => stdout.flush(),
-        };
+        let result = self.raw.flush();
         self.watch(result)
     }
 }

@@ -9,9 +9,9 @@ use super::device::info::DeviceKind;
 use super::device::open::Device;
 use super::kernel::ahead::{Ahead, SOFTWARE_LADDER};
 use super::kernel::compiler::Compiler;
-use super::kernel::pipeline::Stages;
+use super::kernel::picture::Pipelines;
+use super::kernel::pipeline::MAX_TABLES;
 use super::kernel::specialisation::Specialisation;
-use super::kernel::stage::MAX_TABLES;
 use super::kernel::store::KernelStore;
 use super::kernel::variant::Tables;
 use super::shared::LEAST_BUFFERS;
@@ -104,8 +104,8 @@ impl Gpu {
     }
 
     /// The kernels of a picture, and whether another picture has used them before.
-    pub(crate) fn stages(&self, specialisation: &Specialisation) -> Result<(Arc<Stages>, bool), Error> {
-        self.kernels.stages(&self.device, specialisation)
+    pub(crate) fn pipelines(&self, specialisation: &Specialisation) -> Result<(Arc<Pipelines>, bool), Error> {
+        self.kernels.pipelines(&self.device, specialisation)
     }
 
     /// What compiles other kernels.

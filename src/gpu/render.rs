@@ -23,10 +23,10 @@ use crate::geometry::{ellipsoid, shape_indices};
 use crate::gpu::device::error::Error;
 use crate::gpu::device::timestamps::Timestamps;
 use crate::gpu::facade::Gpu;
-use crate::gpu::kernel::pipeline::Bounce;
+use crate::gpu::kernel::picture::Bounce;
+use crate::gpu::kernel::pipeline::{Pipeline, Resources};
 use crate::gpu::kernel::specialisation::Specialisation;
-use crate::gpu::kernel::stage::{Resources, Stage};
-use crate::gpu::kernel::variant::{Kernel, Slots, Variant, Walk};
+use crate::gpu::kernel::variant::{Kernel, Schedule, Slots, Variant};
 use crate::gpu::shared::{ONE_PATH, SEVERAL_PATHS, dispatch_tiles};
 use crate::gpu::table::bind::{are_too_large, check_fits, copies_fit, copy_resources, list_resources, scene_resources};
 use crate::gpu::table::pack::{Packed, list_contents};
@@ -40,11 +40,11 @@ pub use output::{Output, Pixels, Rows};
 use place::{Statuses, dispatch_bits};
 pub use rendered::Rendered;
 use tiles::{TILE_PIXELS, TileWords};
-use work::{RAY_COUNT_SIZE, STAGE_SIZE, Work};
+use work::{PATH_QUEUE_SIZE, RAY_COUNT_SIZE, Work};
 
 /// How many workgroups a dispatch has.
 #[derive(Debug, Clone, Copy)]
-enum Count {
+enum Workgroups {
     Known(u32),
     /// As many as the device has found, in the words from this one on.
     Found(u32),
@@ -115,7 +115,7 @@ pub struct GpuRenderer<'a, O = Rows> {
     /// Parts that the device's threads take of a dispatch.
     hands: usize,
     work: Option<Work>,
-    inputs: Inputs,
+    inputs: BuildInputs,
     tiles_per_dispatch: u32,
     times: DeviceTimes,
     /// Dispatches so far, those of no pixel included.
@@ -129,7 +129,7 @@ pub struct GpuRenderer<'a, O = Rows> {
 
 /// Everything that is needed to build the kernels once a tile asks for them.
 #[derive(Debug)]
-struct Inputs {
+struct BuildInputs {
     resources: Resources,
     specialisation: Specialisation,
 }
@@ -222,7 +222,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         specialisation.shared_surfaces = indices.is_some();
         let packed = Packed::new(viewed, effects, kernel, &accel, indices, tangent_margin);
         if specialisation.variant().copies() && !copies_fit(&gpu.device, tables, &packed, &accel) {
-            specialisation.walk = Walk::AtOnce;
+            specialisation.schedule = Schedule::AtOnce;
         }
         let list_tables = list_contents(&accel);
         check_fits(&gpu.device, tables, &packed, &list_tables)?;
@@ -261,7 +261,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
                 Class::Integrated | Class::Discrete => 1,
             },
             work: None,
-            inputs: Inputs { resources, specialisation },
+            inputs: BuildInputs { resources, specialisation },
             tiles_per_dispatch: tiles.clamp(1, u64::from(specialisation.dispatch_tiles)) as u32,
             times: DeviceTimes::default(),
             submitted: 0,
@@ -318,12 +318,12 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
     fn build(&mut self) -> Result<Work, Error> {
         let start = Instant::now();
         let gpu = self.gpu;
-        let Inputs { resources, specialisation } = &self.inputs;
-        let (stages, used_before) = gpu.stages(specialisation)?;
+        let BuildInputs { resources, specialisation } = &self.inputs;
+        let (pipelines, used_before) = gpu.pipelines(specialisation)?;
         let capacity = self.capacity();
         let has_bounces = self.max_depth > 0;
         let work = gpu.device.checked("reserving buffers", || {
-            Work::new(gpu, stages, resources, capacity, specialisation, has_bounces)
+            Work::new(gpu, pipelines, resources, capacity, specialisation, has_bounces)
         })?;
         if !used_before {
             self.submit(&work, &[[0, 0]])?;
@@ -389,44 +389,44 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         Ok(took)
     }
 
-    /// Runs all stages over `tiles` and waits for them.
+    /// Runs all kernels over `tiles` and waits for them.
     fn submit(&mut self, work: &Work, tiles: &[[u32; 2]]) -> Result<(), Error> {
         self.submitted += 1;
         self.gpu.device.queue.write_buffer(&work.tiles, 0, &self.packed_places(tiles));
-        self.gpu.device.queue.write_buffer(&work.stage, 0, &[0; STAGE_SIZE as usize]);
+        self.gpu.device.queue.write_buffer(&work.path_queue, 0, &[0; PATH_QUEUE_SIZE as usize]);
         let mut encoder = self.gpu.device.raw.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                 label: None,
                 timestamp_writes: self.timestamps.as_ref().map(Timestamps::writes),
             });
-            let mut run = |stage: &Stage, group: &wgpu::BindGroup, workgroups: Count| {
-                pass.set_pipeline(&stage.pipeline);
+            let mut run = |pipeline: &Pipeline, group: &wgpu::BindGroup, workgroups: Workgroups| {
+                pass.set_pipeline(&pipeline.raw);
                 pass.set_bind_group(0, group, &[]);
                 match workgroups {
-                    Count::Known(count) => pass.dispatch_workgroups(count, 1, 1),
-                    Count::Found(word) => pass.dispatch_workgroups_indirect(&work.workgroups, 4 * u64::from(word)),
+                    Workgroups::Known(count) => pass.dispatch_workgroups(count, 1, 1),
+                    Workgroups::Found(word) => pass.dispatch_workgroups_indirect(&work.workgroups, 4 * u64::from(word)),
                 }
             };
-            let tiles = Count::Known(Self::workgroups(tiles.len()));
-            let stages = &work.stages;
-            run(&stages.see, &work.see_group, tiles);
+            let tiles = Workgroups::Known(Self::workgroups(tiles.len()));
+            let pipelines = &work.pipelines;
+            run(&pipelines.trace, &work.trace_group, tiles);
             if let (Some(Bounce { begin, walk, shade }), Some(begin_group), Some(walk_groups)) =
-                (&stages.bounce, &work.begin_group, &work.walk_groups)
+                (&pipelines.bounce, &work.begin_group, &work.walk_groups)
             {
                 for bounce in 0..self.max_depth {
                     let (has_next, from) = (usize::from(bounce + 1 < self.max_depth), bounce as usize % 2);
-                    run(begin, begin_group, Count::Known(1));
+                    run(begin, begin_group, Workgroups::Known(1));
                     match (shade, &work.shade_groups) {
                         (Some(shade), Some(shade_groups)) => {
-                            run(walk, &walk_groups[has_next][from], Count::Found(SEVERAL_PATHS));
-                            run(shade, &shade_groups[has_next][from], Count::Found(ONE_PATH));
+                            run(walk, &walk_groups[has_next][from], Workgroups::Found(SEVERAL_PATHS));
+                            run(shade, &shade_groups[has_next][from], Workgroups::Found(ONE_PATH));
                         }
-                        _ => run(walk, &walk_groups[has_next][from], Count::Found(ONE_PATH)),
+                        _ => run(walk, &walk_groups[has_next][from], Workgroups::Found(ONE_PATH)),
                     }
                 }
             }
-            if let (Some(resolve), Some(group)) = (&stages.resolve, &work.resolve_group) {
+            if let (Some(resolve), Some(group)) = (&pipelines.resolve, &work.resolve_group) {
                 run(resolve, group, tiles);
             }
         }
@@ -443,7 +443,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         let specialisation = &mut self.inputs.specialisation;
         let repeats = specialisation.shares_turns() && statuses.is_cut();
         if repeats {
-            specialisation.walk = Walk::AtOnce;
+            specialisation.schedule = Schedule::AtOnce;
             self.work = None;
         }
         repeats

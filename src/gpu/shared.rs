@@ -12,7 +12,7 @@ pub(super) const TILE_PIXELS: u32 = TILE * TILE;
 pub(super) const UNIFORM: u64 = 1 << 16;
 pub(super) const LEAST_UNIFORM: u64 = 1 << 14;
 /// Storage buffers that kernels read and write beside the tables of a scene, at the most.
-pub(super) const LEAST_BUFFERS: u32 = 4;
+pub const LEAST_BUFFERS: u32 = 4;
 
 /// Tiles of a dispatch at the most on a device that binds so many bytes of a uniform: with their head, four words, they fill one.
 pub(super) const fn dispatch_tiles(uniform: u64) -> u32 {
@@ -49,32 +49,21 @@ pub(super) const POINT_VALUES: u32 = 13;
 
 /// What the shaders declare one of these numbers with, for a kernel of this scalar.
 pub(super) fn declaration(name: &str, scalar: Scalar) -> Option<String> {
-    let whole = |value: u32| format!("u32 = {value}u");
     let real = |value: f64| format!("real = real({value:?})");
-    Some(match name {
-        "TILE" => whole(TILE),
-        "TILE_PIXELS" => whole(TILE_PIXELS),
-        "SMALL_GROUP" => whole(SMALL_GROUP),
-        "ROW_BITS" => whole(ROW_BITS),
-        "WORKGROUP_WORDS" => whole(WORKGROUP_WORDS),
-        "ONE_PATH" => whole(ONE_PATH),
-        "SEVERAL_PATHS" => whole(SEVERAL_PATHS),
-        "STATUS_NOT_FINITE" => whole(STATUS_NOT_FINITE.into()),
-        "STATUS_CUT" => whole(STATUS_CUT.into()),
-        "STATUS_TANGENT" => whole(STATUS_TANGENT.into()),
-        "STATUS_FLAGS" => whole(STATUS_FLAGS.into()),
-        "PROBE_FOUND" => whole(PROBE_FOUND),
-        "PROBE_INSIDE" => whole(PROBE_INSIDE),
-        "PROBE_FINITE" => whole(PROBE_FINITE),
-        "PROBE_FACING" => whole(PROBE_FACING),
-        "PROBE_BLOCKED" => whole(PROBE_BLOCKED),
-        "POINT_VALUES" => whole(POINT_VALUES),
-        "MAX_LARGE" => whole(MAX_LARGE as u32),
-        "NO_SAMPLE" => whole(NO_SAMPLE),
-        "UNIT_WEIGHT" => whole(UNIT_WEIGHT),
-        "MAX_THROUGHPUT" => real(scalar.max_throughput()),
-        "REACH" => real(REACH),
-        "WALK_SLACK" => real(WALK_SLACK),
-        _ => return None,
-    })
+    macro_rules! by_name {
+        (whole: $($whole:ident)*; real: $($real:ident)*) => {
+            match name {
+                $(stringify!($whole) => format!("u32 = {}u", $whole),)*
+                $(stringify!($real) => real($real),)*
+                "MAX_THROUGHPUT" => real(scalar.max_throughput()),
+                _ => return None,
+            }
+        };
+    }
+    Some(by_name!(
+        whole: TILE TILE_PIXELS SMALL_GROUP ROW_BITS WORKGROUP_WORDS ONE_PATH SEVERAL_PATHS STATUS_NOT_FINITE STATUS_CUT
+            STATUS_TANGENT STATUS_FLAGS PROBE_FOUND PROBE_INSIDE PROBE_FINITE PROBE_FACING PROBE_BLOCKED POINT_VALUES MAX_LARGE
+            NO_SAMPLE UNIT_WEIGHT;
+        real: REACH WALK_SLACK
+    ))
 }

@@ -1,13 +1,44 @@
 //! What reports of measurements share: series of times, numbers for people, plots and CSV records.
 
 pub(crate) mod csv;
+pub(crate) mod lines;
 pub(crate) mod number;
-mod skipped;
 pub(crate) mod svg;
 mod timings;
 
-pub use skipped::Skipped;
 pub use timings::Timings;
 
-/// The style sheet of the reports.
-pub(crate) const STYLE: &str = include_str!("report.css");
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use serde::Serialize;
+
+/// A contestant or a scene that was not measured.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Skipped {
+    /// Its name.
+    pub name: String,
+    /// Why.
+    pub reason: String,
+}
+
+/// A report: one HTML file that needs nothing else. `about` and then `command`, which made it, stand below the title.
+pub(crate) fn page(title: &str, about: &str, command: &str, content: &Markup, method: &Markup) -> String {
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { (title) }
+                style { (PreEscaped(include_str!("report.css"))) }
+            }
+            body {
+                h1 { (title) }
+                p.sub { (about) ", measured by " code { (command) } }
+                (content)
+                h2 { "How this was measured" }
+                (method)
+            }
+        }
+    };
+    page.into_string()
+}

@@ -22,6 +22,11 @@ impl Timings {
         &self.runs
     }
 
+    /// The same as text, separated by blanks.
+    pub(crate) fn listed(&self) -> String {
+        self.runs.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ")
+    }
+
     fn sorted(&self) -> Vec<f64> {
         let mut sorted = self.runs.clone();
         sorted.sort_by(f64::total_cmp);

@@ -10,6 +10,7 @@ mod samples;
 
 use std::fmt;
 
+use clap::ValueEnum;
 use serde::Serialize;
 
 pub use density::{Density, Fovea};
@@ -17,7 +18,7 @@ pub use order::{is_sampled, rank};
 pub use samples::{MAX_PIXELS, MAX_SIDE, Samples};
 
 /// How pixels without a sample are filled.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum Fill {
     /// By the nearest sample, found by jump flooding; of equally near ones the upper one, then the left one.

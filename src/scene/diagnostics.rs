@@ -9,6 +9,7 @@ use std::ops::Range;
 use codespan_reporting::diagnostic as codespan;
 use codespan_reporting::files::{Error as FilesError, Files};
 use codespan_reporting::term::{self, termcolor::Buffer};
+use serde::Serialize;
 
 use crate::words::{push_visible, visible};
 
@@ -23,7 +24,8 @@ const SHOWN_FROM: usize = 250;
 const TOKEN_SHOWN: usize = 40;
 
 /// How bad it is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Severity {
     /// The file is no scene: nothing is rendered.
     Error,
@@ -31,19 +33,10 @@ pub enum Severity {
     Warning,
 }
 
-impl fmt::Display for Severity {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Error => "error",
-            Self::Warning => "warning",
-        })
-    }
-}
-
 /// One error or warning, with the place in the file that it is about.
 ///
 /// All texts are safe to print: bytes that are not UTF-8 and characters that a terminal would obey or hide are escaped.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Diagnostic {
     /// Error or warning.
     pub severity: Severity,
@@ -60,7 +53,9 @@ pub struct Diagnostic {
     pub expected: String,
     /// How to set it right, where there is something to say.
     pub help: Option<String>,
+    #[serde(skip)]
     excerpt: Excerpt,
+    #[serde(skip)]
     earlier: Option<Earlier>,
 }
 

@@ -149,9 +149,13 @@ impl Names {
         &self.text[start as usize..end as usize]
     }
 
-    /// The label at `index`, safe to print: it may hold whatever the file has.
-    pub fn shown(&self, index: usize) -> String {
-        visible(self.get(index))
+    /// What this noun calls, by the label at `index`, safe to print since it may hold whatever the file has; without one by the
+    /// index: `sphere 'moon'`, `sphere 3`.
+    pub fn in_words(&self, noun: &str, index: usize) -> String {
+        match self.get(index) {
+            "" => format!("{noun} {index}"),
+            label => format!("{noun} '{}'", visible(label)),
+        }
     }
 
     /// How many labels there are.

@@ -30,20 +30,18 @@ fn render(gpu: &Gpu, tier: Tier, scene: &Scene, settings: &Settings) -> Result<(
 }
 
 /// Adds one scene to the metrics: pixels that are not finite, and differences that the reference does not explain.
-fn add(metrics: &mut Metrics, gpu: &Gpu, tier: Tier, scene: &Scene, settings: &Settings) -> Result<Vec<u8>, Error> {
+fn add(metrics: &mut Metrics, gpu: &Gpu, tier: Tier, scene: &Scene, settings: &Settings) -> Result<(), Error> {
     let (rgb, not_finite) = render(gpu, tier, scene, settings)?;
     let viewed = scene.viewed(settings);
     let effects = Effects::of(&viewed);
     let (expected, _) = render_picture(&mut Engine::new(Backend::Reference, scene.viewed(settings), &effects)?)?;
     metrics.count += u64::from(SIZE * SIZE);
     metrics.not_finite += not_finite;
-    let picture = |rgb: &[u8]| Picture::new(SIZE, SIZE, rgb.to_vec());
-    if let (Ok(picture), Ok(expected)) = (picture(&rgb), picture(&expected)) {
-        let reference = Reference::new(&viewed, &effects);
-        let explanation = Explanation::of(&picture, &expected, &reference, &Judge::of(tier));
-        *metrics.differing.get_or_insert(0) += explanation.unexplained;
-    }
-    Ok(rgb)
+    let [picture, expected] = [rgb, expected].map(|rgb| Picture::assemble(SIZE, SIZE, rgb));
+    let reference = Reference::new(&viewed, &effects);
+    let explanation = Explanation::of(&picture, &expected, &reference, &Judge::of(tier));
+    *metrics.differing.get_or_insert(0) += explanation.unexplained;
+    Ok(())
 }
 
 /// Class 16: a light on the surface, at the middle ray's hit point, inside, behind.

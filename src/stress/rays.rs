@@ -26,12 +26,12 @@ fn each(count: usize, mut make: impl FnMut(&mut Batch, usize)) -> Batch {
 }
 
 /// The semi-axes of a ball of ordinary size; no digits are spared.
-fn ball(random: &mut Random) -> DVec3 {
+pub(super) fn ball(random: &mut Random) -> DVec3 {
     DVec3::splat(random.within(0.3, 3.0))
 }
 
 /// The semi-axes of an ellipsoid of ordinary size and shape.
-fn egg(random: &mut Random) -> DVec3 {
+pub(super) fn egg(random: &mut Random) -> DVec3 {
     shaped(random, DVec3::new(1.0, 0.7, 0.5))
 }
 
@@ -47,10 +47,10 @@ fn of_any_length(random: &mut Random, direction: DVec3) -> DVec3 {
 }
 
 /// Makes the semi-axes of a body.
-type Axes = fn(&mut Random) -> DVec3;
+pub(super) type Axes = fn(&mut Random) -> DVec3;
 
 /// Bodies at `distance` least semi-axes, rays around them.
-fn at_distance(random: &mut Random, count: usize, distance: f64, axes: Axes) -> Batch {
+pub(super) fn at_distance(random: &mut Random, count: usize, distance: f64, axes: Axes) -> Batch {
     each(count, |batch, _| {
         let scale = axes(random);
         let center = random.in_box(2.0);
@@ -61,41 +61,13 @@ fn at_distance(random: &mut Random, count: usize, distance: f64, axes: Axes) -> 
 }
 
 /// Bodies at `distance` least semi-axes from the world's origin, where the eye of every picture is, and rays around them.
-fn from_eye(random: &mut Random, count: usize, distance: f64, axes: Axes) -> Batch {
+pub(super) fn from_eye(random: &mut Random, count: usize, distance: f64, axes: Axes) -> Batch {
     each(count, |batch, _| {
         let scale = axes(random);
         let center = random.unit() * (distance * scale.min_element());
         let target = center + scale * random.in_ball() * 1.3;
         add(batch, DVec3::ZERO, of_any_length(random, target), &[(center, scale)]);
     })
-}
-
-pub(super) fn ordinary(random: &mut Random, count: usize) -> Batch {
-    at_distance(random, count, 7.0, egg)
-}
-
-pub(super) fn ordinary_eye(random: &mut Random, count: usize) -> Batch {
-    from_eye(random, count, 5.0, ball)
-}
-
-pub(super) fn far_3_eye(random: &mut Random, count: usize) -> Batch {
-    from_eye(random, count, 1e3, ball)
-}
-
-pub(super) fn far_5_eye(random: &mut Random, count: usize) -> Batch {
-    from_eye(random, count, 1e5, egg)
-}
-
-pub(super) fn far_3(random: &mut Random, count: usize) -> Batch {
-    at_distance(random, count, 1e3, egg)
-}
-
-pub(super) fn far_5(random: &mut Random, count: usize) -> Batch {
-    at_distance(random, count, 1e5, ball)
-}
-
-pub(super) fn far_7(random: &mut Random, count: usize) -> Batch {
-    at_distance(random, count, 1e7, egg)
 }
 
 /// How far the line of a ray near a tangent passes from the centre, in radii.
@@ -178,7 +150,7 @@ pub(super) fn earth(random: &mut Random, count: usize) -> Batch {
     })
 }
 
-fn above(random: &mut Random, count: usize, axes: Axes) -> Batch {
+pub(super) fn above(random: &mut Random, count: usize, axes: Axes) -> Batch {
     each(count, |batch, _| {
         let (scale, center) = (axes(random), random.in_box(2.0));
         let height = random.sign() * random.magnitude(-7.0, -2.0);
@@ -188,26 +160,14 @@ fn above(random: &mut Random, count: usize, axes: Axes) -> Batch {
     })
 }
 
-pub(super) fn near_balls(random: &mut Random, count: usize) -> Batch {
-    above(random, count, ball)
-}
-
-pub(super) fn near_ellipsoids(random: &mut Random, count: usize) -> Batch {
-    above(random, count, egg)
-}
-
 /// An ellipsoid seen from a distance of five times its greatest semi-axis.
-fn seen(random: &mut Random, count: usize, proportions: DVec3) -> Batch {
+pub(super) fn seen(random: &mut Random, count: usize, proportions: DVec3) -> Batch {
     each(count, |batch, _| {
         let (scale, center) = (shaped(random, proportions), random.in_box(2.0));
         let origin = center + random.unit() * (5.0 * scale.max_element());
         let direction = (center + scale * random.in_ball() * 1.2 - origin).normalize();
         add(batch, origin, direction, &[(center, scale)]);
     })
-}
-
-pub(super) fn disc(random: &mut Random, count: usize) -> Batch {
-    seen(random, count, DVec3::new(1.0, 1.0, 1e-3))
 }
 
 pub(super) fn needle(random: &mut Random, count: usize) -> Batch {
@@ -245,7 +205,7 @@ pub(super) fn translated(random: &mut Random, count: usize) -> Batch {
 }
 
 /// Two bodies around one centre, either of them first.
-fn concentric(random: &mut Random, count: usize, gap: f64) -> Batch {
+pub(super) fn concentric(random: &mut Random, count: usize, gap: f64) -> Batch {
     each(count, |batch, index| {
         let scale = if index % 4 < 2 { ball(random) } else { egg(random) };
         let center = random.in_box(2.0);
@@ -254,22 +214,6 @@ fn concentric(random: &mut Random, count: usize, gap: f64) -> Batch {
         let (inner, outer) = ((center, scale), (center, scale * (1.0 + gap)));
         add(batch, origin, direction, &if index % 2 == 0 { [inner, outer] } else { [outer, inner] });
     })
-}
-
-pub(super) fn concentric_0(random: &mut Random, count: usize) -> Batch {
-    concentric(random, count, 0.0)
-}
-
-pub(super) fn concentric_ulp(random: &mut Random, count: usize) -> Batch {
-    concentric(random, count, super::metrics::U)
-}
-
-pub(super) fn concentric_6(random: &mut Random, count: usize) -> Batch {
-    concentric(random, count, 1e-6)
-}
-
-pub(super) fn concentric_5(random: &mut Random, count: usize) -> Batch {
-    concentric(random, count, 1e-5)
 }
 
 /// Two balls that touch from inside, met where they touch: t is the same to the last bit in every precision.
@@ -290,7 +234,7 @@ fn whole_in(random: &mut Random) -> f64 {
 }
 
 /// The ordinary world times 2 to a power, which keeps every digit.
-fn sized(random: &mut Random, count: usize, power: i32) -> Batch {
+pub(super) fn sized(random: &mut Random, count: usize, power: i32) -> Batch {
     let mut batch = at_distance(random, count, 7.0, egg);
     let k = 2_f64.powi(power);
     for ray in &mut batch.rays {
@@ -302,43 +246,13 @@ fn sized(random: &mut Random, count: usize, power: i32) -> Batch {
     batch
 }
 
-pub(super) fn size_1e20(random: &mut Random, count: usize) -> Batch {
-    sized(random, count, 66)
-}
-
-pub(super) fn size_1em30(random: &mut Random, count: usize) -> Batch {
-    sized(random, count, -100)
-}
-
-pub(super) fn size_1em38(random: &mut Random, count: usize) -> Batch {
-    sized(random, count, -126)
-}
-
-fn inside(random: &mut Random, count: usize, axes: Axes) -> Batch {
+pub(super) fn inside(random: &mut Random, count: usize, axes: Axes) -> Batch {
     each(count, |batch, _| {
         let (scale, center) = (axes(random), random.in_box(2.0));
         let origin = center + scale * random.in_ball() * 0.9;
         let direction = random.unit();
         add(batch, origin, of_any_length(random, direction), &[(center, scale)]);
     })
-}
-
-pub(super) fn inside_balls(random: &mut Random, count: usize) -> Batch {
-    inside(random, count, ball)
-}
-
-pub(super) fn inside_ellipsoids(random: &mut Random, count: usize) -> Batch {
-    inside(random, count, egg)
-}
-
-/// From wall to wall, twice mirrored.
-pub(super) fn mirrored_inside(random: &mut Random, count: usize) -> Batch {
-    Batch { bounces: 2, ..inside(random, count, egg) }
-}
-
-/// From one body of a box to the next one, once mirrored.
-pub(super) fn mirrored(random: &mut Random, count: usize) -> Batch {
-    Batch { bounces: 1, ..secondary(random, count) }
 }
 
 pub(super) fn cut(random: &mut Random, count: usize) -> Batch {
@@ -364,7 +278,7 @@ pub(super) fn touching(random: &mut Random, count: usize) -> Batch {
 }
 
 /// Segments from 0 to 1 that end near a body, before or behind it, begin near one, or pass by one; and such that leave a body.
-fn segments(random: &mut Random, count: usize, axes: Axes) -> Batch {
+pub(super) fn segments(random: &mut Random, count: usize, axes: Axes) -> Batch {
     each(count, |batch, index| {
         let origin = random.in_box(2.0);
         let direction = random.unit() * random.magnitude(-1.0, 1.0);
@@ -398,14 +312,6 @@ fn segments(random: &mut Random, count: usize, axes: Axes) -> Batch {
     })
 }
 
-pub(super) fn shadows_of_balls(random: &mut Random, count: usize) -> Batch {
-    segments(random, count, ball)
-}
-
-pub(super) fn shadows_of_ellipsoids(random: &mut Random, count: usize) -> Batch {
-    segments(random, count, egg)
-}
-
 /// Rays along the axis between two facing mirrors, close enough to it to be caught for some bounces.
 pub(super) fn between_mirrors(random: &mut Random, count: usize) -> Batch {
     let mut batch = Batch::default();
@@ -424,10 +330,17 @@ pub(super) fn between_mirrors(random: &mut Random, count: usize) -> Batch {
 }
 
 /// Index of refraction of crown glass, with digits that f32 holds.
-const GLASS: f64 = 1.517_578_125;
+pub(super) const GLASS: f64 = 1.517_578_125;
 
 /// Rays that go into a body of glass at the origin, or start in it, with a screen of glass around; the screen is met in the end.
-fn through(random: &mut Random, count: usize, axes: Axes, born_inside: bool, eta: f64, bounces: u32) -> Batch {
+pub(super) fn through(
+    random: &mut Random,
+    count: usize,
+    axes: Axes,
+    born_inside: bool,
+    eta: f64,
+    bounces: u32,
+) -> Batch {
     let glass = |batch: &mut Batch, random: &mut Random| {
         let scale = axes(random);
         let target = random.in_ball() * scale;
@@ -440,31 +353,6 @@ fn through(random: &mut Random, count: usize, axes: Axes, born_inside: bool, eta
         add(batch, center + origin, direction, &[(center, scale), screen]);
     };
     Batch { bounces, eta, ..each(count, |batch, _| glass(batch, random)) }
-}
-
-/// In and out of balls.
-pub(super) fn glass_balls(random: &mut Random, count: usize) -> Batch {
-    through(random, count, ball, false, GLASS, 2)
-}
-
-/// In and out of balls that are all but air, where Snell's law is nearly the identity.
-pub(super) fn thin_air(random: &mut Random, count: usize) -> Batch {
-    through(random, count, ball, false, 1.0 + 1.0 / f64::from(1 << 20), 2)
-}
-
-/// In and out of ellipsoids.
-pub(super) fn glass_ellipsoids(random: &mut Random, count: usize) -> Batch {
-    through(random, count, egg, false, GLASS, 2)
-}
-
-/// Bubbles: those beyond the critical angle turn back at once and meet the screen, then leave it.
-pub(super) fn bubbles(random: &mut Random, count: usize) -> Batch {
-    through(random, count, ball, false, 0.742_187_5, 2)
-}
-
-/// Born in diamonds, reflected from wall to wall.
-pub(super) fn diamonds(random: &mut Random, count: usize) -> Batch {
-    through(random, count, egg, true, 2.417_968_75, 4)
 }
 
 /// Out of a ball or an ellipsoid near the critical angle.
@@ -529,7 +417,7 @@ pub(super) fn highlights(random: &mut Random, count: usize) -> (Batch, Vec<bool>
 }
 
 /// A small ball at `gap` radii above a larger one, in the light of which the ray's hit lies or does not.
-fn contact(random: &mut Random, count: usize, gap: f64) -> (Batch, Vec<bool>) {
+pub(super) fn contact(random: &mut Random, count: usize, gap: f64) -> (Batch, Vec<bool>) {
     let mut lit = Vec::with_capacity(count);
     let mut batch = Batch::default();
     for _ in 0..count {
@@ -550,16 +438,4 @@ fn contact(random: &mut Random, count: usize, gap: f64) -> (Batch, Vec<bool>) {
         lit.push(is_lit);
     }
     (batch, lit)
-}
-
-pub(super) fn contact_0(random: &mut Random, count: usize) -> (Batch, Vec<bool>) {
-    contact(random, count, 0.0)
-}
-
-pub(super) fn contact_7(random: &mut Random, count: usize) -> (Batch, Vec<bool>) {
-    contact(random, count, 1e-7)
-}
-
-pub(super) fn interpenetrating(random: &mut Random, count: usize) -> (Batch, Vec<bool>) {
-    contact(random, count, -1e-7)
 }

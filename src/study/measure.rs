@@ -4,15 +4,15 @@ use glam::DVec3;
 use serde::Serialize;
 
 use super::contestant::{Contestant, Runner};
+use super::distance::{Distance, linear_colors};
 use super::effect_cost::{EffectCost, effect_cost};
-use super::error::{Distance, Error, linear_colors};
 use super::sampling::{PartialSeries, partial_series};
 use crate::compare::Explanation;
 use crate::cpu::Reference;
 use crate::effects::{Effect, EffectSet, Effects};
 use crate::engine::Backend;
 use crate::film::Picture;
-use crate::gpu::{DeviceInfo, Gpu};
+use crate::gpu::{DeviceInfo, Error, Gpu};
 use crate::precision::Selection;
 use crate::report::{Skipped, Timings};
 use crate::scene::Scene;
@@ -149,13 +149,13 @@ struct Exact {
 }
 
 impl Exact {
-    fn new(input: &StudyInput, settings: &Settings) -> Result<Self, Error> {
+    fn new(input: &StudyInput, settings: &Settings) -> Self {
         let scene = input.scene;
         let viewed = scene.viewed(settings);
         let reference = Reference::new(&viewed, &(input.effects)(&viewed));
         let linear = linear_colors(&reference, (scene.width, scene.height));
         let rgb = linear.iter().flat_map(|color| settings.quantize.levels(*color)).collect();
-        Ok(Self { reference, linear, picture: Picture::new(scene.width, scene.height, rgb)? })
+        Self { reference, linear, picture: Picture::assemble(scene.width, scene.height, rgb) }
     }
 }
 
@@ -168,13 +168,8 @@ pub enum Event<'a> {
     Measured(&'a Study),
 }
 
-/// Measures everything that `plan` asks for.
-pub fn study(input: &StudyInput, plan: &StudyPlan) -> Result<Study, Error> {
-    watched(input, plan, |_| ())
-}
-
-/// Likewise; `hear` hears of it.
-pub fn watched(input: &StudyInput, plan: &StudyPlan, mut hear: impl FnMut(Event)) -> Result<Study, Error> {
+/// Measures everything that `plan` asks for; `hear` hears of it.
+pub fn study(input: &StudyInput, plan: &StudyPlan, mut hear: impl FnMut(Event)) -> Result<Study, Error> {
     /// The series, sampling in part, and what effects cost.
     const PARTS: f64 = 5.0;
     let StudyInput { scene, settings, gpu, selection, .. } = *input;
@@ -256,20 +251,20 @@ fn series(
     truth: Option<Settings>,
     mut done: impl FnMut(f64),
 ) -> Result<Series, Error> {
-    let truth = truth.map(|settings| Ok::<_, Error>((settings, Exact::new(input, &settings)?))).transpose()?;
+    let truth = truth.map(|settings| (settings, Exact::new(input, &settings)));
     let mut measured = Vec::new();
     let mut round_ms = 0.0;
     for (index, settings) in variants.iter().enumerate() {
         // The first half is to prepare, and to compare pictures.
         done(0.5 * index as f64 / variants.len() as f64);
-        let exact = Exact::new(input, settings)?;
+        let exact = Exact::new(input, settings);
         for contestant in contestants.clone() {
             match warm_up(input, contestant, settings, &exact, truth.as_ref().map(|(_, truth)| truth)) {
                 Ok((runner, point, ms)) => {
                     measured.push((runner, point));
                     round_ms += ms;
                 }
-                Err(Error::Device(refusal)) if refusal.is_refusal() => {
+                Err(refusal) if refusal.is_refusal() => {
                     contestants.retain(|other| *other != contestant);
                     skipped.push(Skipped { name: contestant.name().into(), reason: refusal.to_string() });
                 }
@@ -322,7 +317,7 @@ fn warm_up<'a>(
         linear.as_ref().map_or(distance, |linear| distance.with_linear(linear, &from.linear))
     };
     let (error, from_truth) = (distance(exact), truth.map(distance));
-    let picture = Picture::new(scene.width, scene.height, runner.rgb.clone())?;
+    let picture = Picture::assemble(scene.width, scene.height, runner.rgb.clone());
     let explanation = Explanation::of(&picture, &exact.picture, &exact.reference, &contestant.judge(gpu));
     let point = Point {
         contestant,

@@ -1,8 +1,8 @@
 //! What accuracy and effects cost in time, measured on the user's scene and device.
 
 mod contestant;
+mod distance;
 mod effect_cost;
-mod error;
 mod hard_cases;
 mod measure;
 mod plots;
@@ -13,10 +13,10 @@ mod table;
 
 pub use crate::report::{Skipped, Timings};
 pub use contestant::Contestant;
+pub use distance::Distance;
 pub use effect_cost::{EffectCost, Variant, effect_cost};
-pub use error::{Distance, Error};
 pub use hard_cases::{HardCases, hard_cases};
-pub use measure::{Event, Point, Series, Study, StudyInput, StudyPlan, Truth, study, watched};
+pub use measure::{Event, Point, Series, Study, StudyInput, StudyPlan, Truth, study};
 pub use report::html;
 pub use sampling::{Manner, PartialPoint, PartialSeries};
 pub use table::{COLUMNS, csv};

@@ -6,8 +6,9 @@ use super::contestant::Contestant;
 use super::measure::{Point, Series, Study};
 use crate::precision::Tier;
 use crate::report::Timings;
+use crate::report::lines::{FRAME, Line, Ranged, plot};
 use crate::report::number::{ppm, short, time};
-use crate::report::svg::{Axis, Frame, Rect, drawing, place_labels, px, spread, x_axis, y_axis};
+use crate::report::svg::{Axis, Frame, Rect, drawing, place_labels, px, x_axis, y_axis};
 
 /// The colour class of a contestant.
 pub(super) fn class(contestant: Contestant) -> &'static str {
@@ -78,53 +79,11 @@ pub(super) fn pareto(study: &Study) -> Markup {
     drawing(760.0, frame.bottom + 52.0, "Error against time for every tier and the CPU", &content)
 }
 
-/// A value, and the least and greatest of it.
-type Ranged = (f64, [f64; 2]);
-
-/// One line of a plot over steps.
-struct Line<'a> {
-    class: &'static str,
-    name: &'a str,
-    /// Step, value, and the least and greatest of it.
-    points: Vec<(usize, f64, [f64; 2])>,
-}
-
-/// Lines over steps that stand at equal distances.
-fn lines(label: &str, steps: &[String], x_title: &str, y_title: &str, logarithmic: bool, lines: &[Line]) -> Markup {
-    let frame = Frame { left: 76.0, right: 400.0, top: 44.0, bottom: 264.0 };
-    let values =
-        lines.iter().flat_map(|line| line.points.iter().flat_map(|(_, value, ends)| [*value, ends[0], ends[1]]));
-    let y = if logarithmic {
-        Axis::logarithmic(values, frame.bottom, frame.top)
-    } else {
-        Axis::from_zero(values, frame.bottom, frame.top)
-    };
-    let inner = 26.0;
-    let distance = (frame.right - frame.left - 2.0 * inner) / (steps.len().max(2) - 1) as f64;
-    let x = |step: usize| frame.left + inner + step as f64 * distance;
-    let ticks: Vec<_> = steps.iter().enumerate().map(|(step, name)| (x(step), name.clone())).collect();
-    let ends: Vec<_> =
-        lines.iter().filter_map(|line| line.points.last().map(|(_, value, _)| y.place(*value))).collect();
-    let labels = spread(&ends, 17.0, frame.top, frame.bottom);
-    let content = html! {
-        (x_axis(&frame, &ticks, x_title))
-        (y_axis(&frame, &y.ticks(), y_title))
-        @for ((line, end), label) in lines.iter().zip(&ends).zip(&labels) {
-            g class=(line.class) {
-                @let path: Vec<_> = line.points.iter().map(|(step, value, _)| format!("{:.1},{:.1}", x(*step), y.place(*value))).collect();
-                polyline.line points=(path.join(" ")) {}
-                @for (step, value, [low, high]) in &line.points {
-                    line.bar x1=(px(x(*step))) x2=(px(x(*step))) y1=(px(y.place(*low))) y2=(px(y.place(*high))) {}
-                    circle.dot cx=(px(x(*step))) cy=(px(y.place(*value))) r="4" {}
-                }
-                @if let Some((step, _, _)) = line.points.last() {
-                    line.leader x1=(px(x(*step) + 7.0)) x2=(px(frame.right + 4.0)) y1=(px(*end)) y2=(px(*label)) {}
-                }
-                text.name x=(px(frame.right + 8.0)) y=(px(label + 4.5)) { (line.name) }
-            }
-        }
-    };
-    drawing(480.0, frame.bottom + 52.0, label, &content)
+/// Places of so many steps at equal distances.
+fn steps(count: usize) -> impl Fn(usize) -> f64 {
+    const INNER: f64 = 26.0;
+    let distance = (FRAME.right - FRAME.left - 2.0 * INNER) / (count.max(2) - 1) as f64;
+    move |step| FRAME.left + INNER + step as f64 * distance
 }
 
 /// Time and error over the values that `series` varies, which `step` reads off a point.
@@ -132,15 +91,15 @@ pub(super) fn over(series: &Series, what: &str, step: impl Fn(&Point) -> u32) ->
     let mut values: Vec<u32> = series.points.iter().map(&step).collect();
     values.sort_unstable();
     values.dedup();
-    let names: Vec<_> = values.iter().map(ToString::to_string).collect();
-    let place = |point: &Point| values.iter().position(|value| *value == step(point)).unwrap_or(0);
+    let at = steps(values.len());
+    let ticks: Vec<_> = values.iter().enumerate().map(|(step, value)| (at(step), value.to_string())).collect();
+    let place = |point: &Point| at(values.iter().position(|value| *value == step(point)).unwrap_or(0));
     let mut of_contestants = Contestant::ALL.to_vec();
     of_contestants.retain(|contestant| series.points.iter().any(|point| point.contestant == *contestant));
     let line = |contestant: &Contestant, read: &dyn Fn(&Point) -> Option<Ranged>| {
         let own = series.points.iter().filter(|point| point.contestant == *contestant);
-        let mut points: Vec<_> =
-            own.filter_map(|point| read(point).map(|(value, ends)| (place(point), value, ends))).collect();
-        points.sort_by_key(|(step, _, _)| *step);
+        let mut points: Vec<_> = own.filter_map(|point| Some((place(point), read(point)?))).collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
         Line { class: class(*contestant), name: contestant.name(), points }
     };
     let times: Vec<_> = of_contestants
@@ -153,8 +112,8 @@ pub(super) fn over(series: &Series, what: &str, step: impl Fn(&Point) -> u32) ->
     let logarithmic_error = positive && errors.iter().any(|line| !line.points.is_empty());
     let error_title = if logarithmic_error { "RMS colour error (logarithmic)" } else { "RMS colour error" };
     [
-        lines(&format!("Time against {what}"), &names, what, "time in ms (logarithmic)", true, &times),
-        lines(&format!("Error against {what}"), &names, what, error_title, logarithmic_error, &errors),
+        plot(&format!("Time against {what}"), (&ticks, what), ("time in ms (logarithmic)", true), &times),
+        plot(&format!("Error against {what}"), (&ticks, what), (error_title, logarithmic_error), &errors),
     ]
 }
 

@@ -1,39 +1,25 @@
 //! The report: one HTML file that needs nothing else.
 
 use glam::DVec3;
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, html};
 
 use super::contestant::Contestant;
 use super::hard_cases::HardCases;
 use super::measure::{Point, Series, Study};
 use super::plots;
 use crate::report::number::{ppm, short, time};
+use crate::report::page;
 use crate::settings::{SampleOffset, Settings};
 use crate::view::View;
 use crate::words::count;
 
 /// The page with all `studies` and the hard cases, where they were measured; `command` is what made them.
 pub fn html(studies: &[Study], hard_cases: Option<&HardCases>, command: &str) -> String {
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { "What accuracy costs" }
-                style { (PreEscaped(crate::report::STYLE)) }
-            }
-            body {
-                h1 { "What accuracy costs" }
-                p.sub { "Render time against error, measured by " code { (command) } }
-                @for study in studies { (section(study)) }
-                @if let Some(cases) = hard_cases { (cases.section()) }
-                h2 { "How this was measured" }
-                (method())
-            }
-        }
+    let content = html! {
+        @for study in studies { (section(study)) }
+        @if let Some(cases) = hard_cases { (cases.section()) }
     };
-    page.into_string()
+    page("What accuracy costs", "Render time against error", command, &content, &method())
 }
 
 fn section(study: &Study) -> Markup {

@@ -4,10 +4,10 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::error::{Distance, Error};
+use super::distance::Distance;
 use super::measure::{StudyInput, StudyPlan};
 use crate::engine::{Backend, Engine, Filler, Options, Pixels, render_picture};
-use crate::gpu;
+use crate::gpu::Error;
 use crate::report::Timings;
 use crate::sampling::{Density, Fill, Fovea, Samples};
 
@@ -124,7 +124,7 @@ pub(super) fn partial_series(input: &StudyInput, plan: &StudyPlan) -> Result<Par
     let mut round_ms = 0.0;
     for (manner, least) in [Manner::Sparse, Manner::Foveated].into_iter().flat_map(|m| PARTS.map(|least| (m, least))) {
         let density = if manner == Manner::Sparse { Density::sparse(least) } else { foveated(least) };
-        let samples = Samples::new(size, &density).map_err(gpu::Error::from)?;
+        let samples = Samples::new(size, &density)?;
         for fill in Fill::ALL {
             let engine = Engine::with(backend, scene.viewed(settings), &effects, &Options::default())?;
             let mut runner = Runner { engine, samples: samples.clone(), colors: vec![[0; 3]; samples.pixels().len()] };

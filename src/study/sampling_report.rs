@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use maud::{Markup, html};
 
-use super::error::Distance;
+use super::distance::Distance;
 use super::sampling::{Manner, PartialPoint, PartialSeries};
 use crate::report::number::{short, time};
 use crate::report::svg::{Axis, Frame, drawing, px, spread, x_axis, y_axis};

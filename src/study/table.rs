@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::error::Distance;
+use super::distance::Distance;
 use super::measure::{Point, Series, Study};
 use super::sampling::PartialPoint;
 use crate::report::Timings;
@@ -151,7 +151,7 @@ pub fn csv(studies: &[Study]) -> String {
             fields.extend(std::iter::repeat_n(String::new(), 13));
             fields.push(variant.same_picture.to_string());
             fields.extend(std::iter::repeat_n(String::new(), 3));
-            fields.push(runs(&variant.render));
+            fields.push(variant.render.listed());
             text += &record(&[&head[..], &fields].concat());
         }
         for point in &study.partial.points {
@@ -169,10 +169,6 @@ fn times(sample: &Timings) -> [String; 5] {
         sample.max().to_string(),
         sample.outliers().to_string(),
     ]
-}
-
-fn runs(sample: &Timings) -> String {
-    sample.runs().iter().map(ToString::to_string).collect::<Vec<_>>().join(" ")
 }
 
 fn fields(name: &str, series: &Series, point: &Point) -> Vec<String> {
@@ -197,7 +193,7 @@ fn fields(name: &str, series: &Series, point: &Point) -> Vec<String> {
         optional(point.from_truth.and_then(|distance| distance.rms_linear)),
     ]);
     fields.extend(std::iter::repeat_n(String::new(), 4));
-    fields.push(runs(&point.wall));
+    fields.push(point.wall.listed());
     fields
 }
 
@@ -211,6 +207,6 @@ fn partial_fields(study: &Study, point: &PartialPoint) -> Vec<String> {
     fields.push(rms_level.to_string());
     fields.extend(std::iter::repeat_n(String::new(), 9));
     fields.push(point.pixels.to_string());
-    fields.extend([point.inside.rms_level.to_string(), point.outside.rms_level.to_string(), runs(&point.wall)]);
+    fields.extend([point.inside.rms_level.to_string(), point.outside.rms_level.to_string(), point.wall.listed()]);
     fields
 }

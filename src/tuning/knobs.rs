@@ -17,97 +17,32 @@ pub struct Knob {
     pub set: fn(&mut Tuning, f64),
 }
 
-/// All numbers of a tuning.
+macro_rules! knob {
+    ($name:literal, $($field:ident).+, |$value:ident| $converted:expr, $limits:expr, $candidates:expr) => {
+        Knob {
+            name: $name,
+            limits: $limits,
+            candidates: &$candidates,
+            get: |tuning| f64::from(tuning.$($field).+),
+            set: |tuning, $value| tuning.$($field).+ = $converted,
+        }
+    };
+}
+
+/// All numbers of a tuning: name, place and type, limits, candidates.
+#[rustfmt::skip]
 pub static KNOBS: [Knob; 13] = [
-    Knob {
-        name: "workgroup",
-        limits: [1.0, 256.0],
-        candidates: &[8.0, 16.0, 32.0, 64.0, 128.0, 256.0],
-        get: |tuning| f64::from(tuning.workgroup),
-        set: |tuning, value| tuning.workgroup = value as u32,
-    },
-    Knob {
-        name: "in_place_below",
-        limits: [0.0, NEVER],
-        candidates: &[0.0, 1e3, 1e4, 1e5],
-        get: |tuning| tuning.in_place_below,
-        set: |tuning, value| tuning.in_place_below = value,
-    },
-    Knob {
-        name: "in_turn_from",
-        limits: [0.0, NEVER],
-        candidates: &[1e3, 1e4, 1e5, NEVER],
-        get: |tuning| tuning.in_turn_from,
-        set: |tuning, value| tuning.in_turn_from = value,
-    },
-    Knob {
-        name: "paths",
-        limits: [1.0, 256.0],
-        candidates: &[16.0, 32.0, 64.0, 128.0],
-        get: |tuning| f64::from(tuning.paths),
-        set: |tuning, value| tuning.paths = value as u32,
-    },
-    Knob {
-        name: "texture_tables",
-        limits: [0.0, 1.0],
-        candidates: &[0.0, 1.0],
-        get: |tuning| f64::from(u8::from(tuning.texture_tables)),
-        set: |tuning, value| tuning.texture_tables = value >= 0.5,
-    },
-    Knob {
-        name: "longest_tile",
-        limits: [0.0, NEVER],
-        candidates: &[3.0, 6.0, 12.0, 24.0, NEVER],
-        get: |tuning| tuning.density.longest_tile,
-        set: |tuning, value| tuning.density.longest_tile = value,
-    },
-    Knob {
-        name: "light_entries",
-        limits: [0.0, 256.0],
-        candidates: &[3.0, 6.0, 12.0, 24.0, 48.0],
-        get: |tuning| tuning.density.light_entries,
-        set: |tuning, value| tuning.density.light_entries = value,
-    },
-    Knob {
-        name: "light_entries_of_many",
-        limits: [0.0, 64.0],
-        candidates: &[3.0, 6.0, 12.0],
-        get: |tuning| tuning.density.light_entries_of_many,
-        set: |tuning, value| tuning.density.light_entries_of_many = value,
-    },
-    Knob {
-        name: "grid_cells",
-        limits: [0.01, 64.0],
-        candidates: &[0.5, 1.0, 3.0, 6.0, 12.0],
-        get: |tuning| tuning.density.grid_cells,
-        set: |tuning, value| tuning.density.grid_cells = value,
-    },
-    Knob {
-        name: "grid_cells_of_many",
-        limits: [0.01, 16.0],
-        candidates: &[0.5, 1.0, 2.0],
-        get: |tuning| tuning.density.grid_cells_of_many,
-        set: |tuning, value| tuning.density.grid_cells_of_many = value,
-    },
-    Knob {
-        name: "path_mib",
-        limits: [1.0, 1024.0],
-        candidates: &[16.0, 32.0, 64.0, 128.0],
-        get: |tuning| f64::from(tuning.path_mib),
-        set: |tuning, value| tuning.path_mib = value as u32,
-    },
-    Knob {
-        name: "dispatch_ms",
-        limits: [1.0, 200.0],
-        candidates: &[10.0, 25.0, 50.0, 100.0, 200.0],
-        get: |tuning| tuning.dispatch_ms,
-        set: |tuning, value| tuning.dispatch_ms = value,
-    },
-    Knob {
-        name: "first_dispatch_tests",
-        limits: [1.0, 1e9],
-        candidates: &[1e6, 4e6, 16e6, 64e6],
-        get: |tuning| tuning.first_dispatch_tests,
-        set: |tuning, value| tuning.first_dispatch_tests = value,
-    },
+    knob!("workgroup", workgroup, |value| value as u32, [1.0, 256.0], [8.0, 16.0, 32.0, 64.0, 128.0, 256.0]),
+    knob!("in_place_below", in_place_below, |value| value, [0.0, NEVER], [0.0, 1e3, 1e4, 1e5]),
+    knob!("in_turn_from", in_turn_from, |value| value, [0.0, NEVER], [1e3, 1e4, 1e5, NEVER]),
+    knob!("paths", paths, |value| value as u32, [1.0, 256.0], [16.0, 32.0, 64.0, 128.0]),
+    knob!("texture_tables", texture_tables, |value| value >= 0.5, [0.0, 1.0], [0.0, 1.0]),
+    knob!("longest_tile", density.longest_tile, |value| value, [0.0, NEVER], [3.0, 6.0, 12.0, 24.0, NEVER]),
+    knob!("light_entries", density.light_entries, |value| value, [0.0, 256.0], [3.0, 6.0, 12.0, 24.0, 48.0]),
+    knob!("light_entries_of_many", density.light_entries_of_many, |value| value, [0.0, 64.0], [3.0, 6.0, 12.0]),
+    knob!("grid_cells", density.grid_cells, |value| value, [0.01, 64.0], [0.5, 1.0, 3.0, 6.0, 12.0]),
+    knob!("grid_cells_of_many", density.grid_cells_of_many, |value| value, [0.01, 16.0], [0.5, 1.0, 2.0]),
+    knob!("path_mib", path_mib, |value| value as u32, [1.0, 1024.0], [16.0, 32.0, 64.0, 128.0]),
+    knob!("dispatch_ms", dispatch_ms, |value| value, [1.0, 200.0], [10.0, 25.0, 50.0, 100.0, 200.0]),
+    knob!("first_dispatch_tests", first_dispatch_tests, |value| value, [1.0, 1e9], [1e6, 4e6, 16e6, 64e6]),
 ];

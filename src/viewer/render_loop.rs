@@ -12,10 +12,11 @@ use super::scene_file::{SceneError, SceneFile};
 use super::session::Session;
 use super::session_renderer::{Context, SessionRenderer};
 use super::view_state::ViewState;
-use super::wake_signal::{WakeSignal, lock};
+use super::wake_signal::WakeSignal;
 use crate::gpu::{self, Gpu};
 use crate::panics::message;
 use crate::scene::Scene;
+use crate::threads::lock;
 
 /// Pages at once.
 pub const MAX_PAGES: usize = 16;

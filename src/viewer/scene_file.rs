@@ -8,9 +8,10 @@ use std::time::{Duration, SystemTime};
 
 use serde::Serialize;
 
-use super::wake_signal::{WakeSignal, lock};
+use super::wake_signal::WakeSignal;
 use crate::panics::message;
 use crate::scene::{Scene, Severity, parse};
+use crate::threads::lock;
 
 /// Time between two looks at the file.
 const INTERVAL: Duration = Duration::from_millis(100);

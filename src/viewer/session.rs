@@ -10,7 +10,7 @@ use super::pose::FlightScale;
 use super::preview::PreviewOptions;
 use super::requests::PageRequest;
 use super::view_state::ViewState;
-use super::wake_signal::lock;
+use crate::threads::lock;
 
 /// Messages that a page may leave unacknowledged before it gets no more.
 pub const MAX_UNACKNOWLEDGED: usize = 4;

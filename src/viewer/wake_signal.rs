@@ -1,7 +1,9 @@
 //! What wakes the thread that renders.
 
-use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Condvar, Mutex, PoisonError};
 use std::time::Duration;
+
+use crate::threads::lock;
 
 /// Wakes the thread that renders.
 #[derive(Debug, Default)]
@@ -22,9 +24,4 @@ impl WakeSignal {
         let waited = self.changed.wait_timeout_while(lock(&self.raised), limit, |raised| !*raised);
         *waited.unwrap_or_else(PoisonError::into_inner).0 = false;
     }
-}
-
-/// Never poisoned in a way that matters: every change under these locks is complete at each step.
-pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -155,7 +155,7 @@ fn measure(gpu: Option<&Gpu>, families: &[&str], seconds: f64) -> Bench {
     let families = families.iter().map(|name| family(name)).collect();
     let plan = BenchPlan { families, max_spheres: 100, runs: 2, seconds, cpu: true };
     let mut scenes = 0;
-    let result = bench(&setup, &plan, |_, _| scenes += 1).unwrap();
+    let result = bench(&setup, &plan, |_, _, _| scenes += 1).unwrap();
     assert_eq!(scenes, result.families.iter().map(|family| family.scenes.len()).sum::<usize>());
     result
 }

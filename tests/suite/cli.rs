@@ -508,20 +508,20 @@ fn the_shader_of_a_scene_can_be_read() {
         module.entry_points.into_iter().map(|entry| entry.name).collect::<Vec<_>>()
     };
     let text = printed("");
-    assert!(text.starts_with("// see_tiles, the kernel of scene.txt at "), "{text}");
+    assert!(text.starts_with("// trace_tiles, the kernel of scene.txt at "), "{text}");
     assert!(text.contains("\n// ==== shaders/slots_tiles.wgsl, slot `slots` ====\n"), "{text}");
     // The scene has one sphere, ambient light alone and no mirror.
     assert!(text.contains("// AMBIENT = 1\n// DIFFUSE = 0\n"), "{text}");
-    assert_eq!(names(&text), ["see_tiles"]);
+    assert_eq!(names(&text), ["trace_tiles"]);
     assert_eq!(names(&printed("--spp 4 --entry resolve")), ["resolve"]);
-    assert_eq!(names(&printed("--sparse 0.5")), ["see_samples"]);
+    assert_eq!(names(&printed("--sparse 0.5")), ["trace_samples"]);
     // Each tier has its own.
     let fast = printed("--precision fast");
     assert!(fast.contains("shaders/real_f32.wgsl") && fast.contains("shaders/kernel_plain.wgsl"), "{fast}");
     assert!(printed("--precision robust").contains("shaders/kernel_robust.wgsl"));
 
     let text = printed("--spirv");
-    assert!(text.starts_with("; see_tiles, the kernel of scene.txt at "), "{text}");
+    assert!(text.starts_with("; trace_tiles, the kernel of scene.txt at "), "{text}");
     assert!(text.contains("OpEntryPoint GLCompute") && text.contains("NoContraction"), "{text}");
     assert!(!text.contains("OpFunctionCall"), "{text}");
 }
@@ -533,7 +533,7 @@ fn a_shader_that_is_not_there_is_refused_with_those_that_are() {
     assert_exit(&place.run_without_driver("shader scene.txt"), 4, "");
     assert_exit(&place.run("shader missing.txt"), 3, "cannot read the scene missing.txt");
     if gpu("a_shader_that_is_not_there_is_refused_with_those_that_are").is_some() {
-        let message = "this picture has no kernel `walk_paths`\n  help: it has see_tiles, resolve";
+        let message = "this picture has no kernel `walk_paths`\n  help: it has trace_tiles, resolve";
         assert_exit(&place.run("shader --spp 4 --entry walk_paths scene.txt"), 2, message);
     }
 }
@@ -636,5 +636,40 @@ fn every_command_has_a_manual_page() {
         let page = stdout(place.run_without_driver(&format!("man {command}")));
         assert!(page.contains(&format!(".TH trueray-{command} 1")) && page.contains("Examples:"), "{page}");
     }
+    let version = stdout(place.run_without_driver("--version"));
+    let (_, last) = page.split_once(".SH VERSION\n").unwrap();
+    assert!(last.starts_with(".nf\n") && last.lines().count() == 1 + version.lines().count(), "{last}");
     assert_exit(&place.run("man walk"), 2, "there is no command `walk`");
+}
+
+/// Whoever keeps the help in a file has to know that it is not there.
+#[cfg(target_os = "linux")]
+#[test]
+fn what_does_not_fit_on_the_disk_is_no_success() {
+    let place = Folder::new(SCENE);
+    let run = |arguments: &str| {
+        let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        place.command(arguments).stdout(full).output().unwrap()
+    };
+    for arguments in ["--help", "-h", "render --help", "--version", "man", "check scene.txt"] {
+        assert_exit(&run(arguments), 6, "cannot write standard output");
+    }
+    assert_exit(&run("--no-such-option"), 2, "--no-such-option");
+}
+
+/// `--device cpu` is a way out where it is one.
+#[test]
+fn only_commands_that_take_the_reference_advise_it() {
+    let place = Folder::new(SCENE);
+    let help = "help: `--device cpu` renders without any";
+    for arguments in ["render --device gpu scene.txt", "study --device gpu scene.txt", "bench --device gpu", "devices"]
+    {
+        assert_exit(&place.run_without_driver(arguments), 4, help);
+    }
+    for arguments in ["stress", "shader scene.txt", "bench --tune", "compare --scene scene.txt"] {
+        let code = if arguments.starts_with("compare") { 2 } else { 4 };
+        let output = place.run_without_driver(arguments);
+        assert_exit(&output, code, "no Vulkan device");
+        assert!(!String::from_utf8_lossy(&output.stderr).contains("--device cpu"), "{arguments}");
+    }
 }

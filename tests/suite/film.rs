@@ -76,7 +76,7 @@ fn formats_by_name_and_extension() {
         assert_eq!(format.to_string().to_uppercase().parse(), Ok(format));
     }
     let unknown = "exr".parse::<Format>().unwrap_err();
-    assert_eq!(unknown.to_string(), "`exr` is no picture format; there are p6, p3 and png");
+    assert_eq!(unknown, "`exr` is no picture format; there are p6, p3 and png");
     let by_extension = |name| Format::from_extension(Path::new(name));
     assert_eq!(by_extension("a/b.ppm"), Some(Format::P6));
     assert_eq!(by_extension("b.PNG"), Some(Format::Png));

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use trueray::gpu::{Kernel, Module, Places, Slots, Storage, Tables, Variant, Walk};
+use trueray::gpu::{Kernel, Module, Schedule, Secondary, Slots, Storage, Tables, Variant};
 use trueray::precision::Tier;
 use trueray::sampling::Fill;
 
@@ -113,25 +113,37 @@ fn a_file_needs_what_it_uses_and_nothing_else() {
     }
 }
 
+/// A picture of few spheres in which nothing refracts.
+const PLAIN: Variant = Variant {
+    kernel: Kernel::Tier(Tier::Fast),
+    storage: Storage::Tables(Tables::Stored),
+    secondary: Secondary::Large,
+    samples: false,
+    refraction: None,
+    slots: Slots::Tiles,
+    schedule: Schedule::InPlace,
+    dispatch_tiles: 8,
+};
+
 /// Some modules that together have every file.
 fn modules() -> Vec<Module> {
-    let in_turn = Walk::InTurn(std::num::NonZeroU32::MIN);
+    let in_turn = Schedule::InTurn(std::num::NonZeroU32::MIN);
     let kernels = Tier::ALL.map(Kernel::Tier).into_iter().chain([Kernel::Pairs, Kernel::Schoolbook, Kernel::NoBarrier]);
     let kernels: Vec<_> = kernels.collect();
     let ways = [
-        (Places::Grid, Tables::Stored, Slots::Tiles, Walk::InPlace, None),
-        (Places::Large, Tables::Sampled, Slots::List, Walk::AtOnce, None),
-        (Places::Both, Tables::Stored, Slots::Tiles, in_turn, None),
-        (Places::Both, Tables::Buffers, Slots::Tiles, in_turn, None),
-        (Places::Both, Tables::Stored, Slots::Tiles, Walk::AtOnce, Some(std::num::NonZeroU32::MIN)),
+        (Secondary::Grid, Tables::Stored, Slots::Tiles, Schedule::InPlace, None),
+        (Secondary::Large, Tables::Sampled, Slots::List, Schedule::AtOnce, None),
+        (Secondary::Both, Tables::Stored, Slots::Tiles, in_turn, None),
+        (Secondary::Both, Tables::Buffers, Slots::Tiles, in_turn, None),
+        (Secondary::Both, Tables::Stored, Slots::Tiles, Schedule::AtOnce, Some(std::num::NonZeroU32::MIN)),
     ];
     let pictures = kernels.iter().flat_map(|&kernel| {
-        ways.map(|(places, tables, slots, walk, refraction)| {
+        ways.map(|(secondary, tables, slots, schedule, refraction)| {
             let (storage, samples) = (Storage::Tables(tables), slots == Slots::List);
-            Module::render(&Variant { kernel, storage, places, samples, refraction, slots, walk, dispatch_tiles: 8 })
+            Module::render(&Variant { kernel, storage, secondary, samples, refraction, slots, schedule, ..PLAIN })
         })
     });
-    let others = [Module::between_stages(), Module::flood(), Module::selftest()];
+    let others = [Module::between_bounces(), Module::flood(), Module::selftest()];
     let others = others.into_iter().chain(Fill::ALL.map(Module::fill));
     let each = kernels
         .iter()
@@ -159,16 +171,7 @@ fn the_page_about_the_shaders_is_right() {
     let page = std::fs::read_to_string(root().join("shaders/README.md")).unwrap();
     let example = page.split("```text\n").nth(1).unwrap().split("```").next().unwrap();
     let named: BTreeSet<_> = example.lines().flat_map(|line| line.split("  ").next().unwrap().split(", ")).collect();
-    let module = Module::render(&Variant {
-        kernel: Kernel::Tier(Tier::Fast),
-        storage: Storage::Tables(Tables::Stored),
-        places: Places::Large,
-        samples: false,
-        refraction: None,
-        slots: Slots::Tiles,
-        walk: Walk::InPlace,
-        dispatch_tiles: 8,
-    });
+    let module = Module::render(&PLAIN);
     let paths: Vec<_> = module.files().collect();
     let names = paths.iter().filter_map(|path| path.strip_prefix("shaders/")?.strip_suffix(".wgsl"));
     assert_eq!(named, names.collect());

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use trueray::errors::Invalid;
+use trueray::scene::MAX_RESOLUTION;
 use trueray::settings::Secondary;
 use trueray::{DVec3, Difference, Error, Light, Picture, Renderer, Scene, Settings, Sphere, Tier, Verify, Window};
 
@@ -63,7 +64,7 @@ fn numbers_that_no_file_may_have_are_refused() {
         (|scene| scene.background.x = f64::NAN, "r of BACK is NaN"),
         (|scene| scene.ambient.z = f64::NAN, "Ib of AMBIENT is NaN"),
         (|scene| scene.width = 0, "width of the picture is 0: expected 1 to 16777216 pixels"),
-        (|scene| scene.height = 1 << 25, "height of the picture is 33554432"),
+        (|scene| scene.height = MAX_RESOLUTION + 1, "height of the picture is 16777217"),
     ];
     for (change, message) in changes {
         let mut scene = scene();
@@ -75,8 +76,10 @@ fn numbers_that_no_file_may_have_are_refused() {
     let mut far = scene();
     far.spheres[0].center.x = 1e300;
     far.spheres[1].scale.x = 1e-300;
-    assert!(matches!(Renderer::reference().render(&far, &Settings::default()), Err(Error::Unrenderable(_))));
-    let vast = Scene::new(Window::default(), 1 << 24, 1 << 24);
+    let error = Renderer::reference().render(&far, &Settings::default()).unwrap_err();
+    assert!(matches!(error, Error::Unrenderable(_)));
+    assert!(error.to_string().ends_with("least semi-axis of sphere 0"), "no label: {error}");
+    let vast = Scene::new(Window::default(), MAX_RESOLUTION, MAX_RESOLUTION);
     assert!(matches!(Renderer::reference().render(&vast, &Settings::default()), Err(Error::Unrenderable(_))));
     for (shadow, reflection) in [(-1.0, 0.0), (1.0, 0.0), (f64::NAN, 0.0), (0.0, -1.0), (0.0, f64::NAN)] {
         let settings = Settings { secondary: Secondary { shadow, reflection }, ..Settings::default() };

@@ -6,7 +6,7 @@ use trueray::compare::Explanation;
 use trueray::cpu::Reference;
 use trueray::effects::Effects;
 use trueray::engine::Backend;
-use trueray::gpu::{Choice, Device, Error, Gpu, Mask, Tables};
+use trueray::gpu::{Choice, Device, Error, Gpu, LEAST_BUFFERS, MAX_TABLES, Mask, Tables};
 use trueray::precision::Tier;
 use trueray::scene::Scene;
 use trueray::settings::Settings;
@@ -37,7 +37,7 @@ fn masks() -> Vec<(&'static str, Mask, Tables)> {
         (
             "the least of Vulkan",
             Mask {
-                storage_buffers: Some(4),
+                storage_buffers: Some(LEAST_BUFFERS),
                 storage_textures: Some(4),
                 sampled_textures: Some(16),
                 uniform_bytes: Some(16_384),
@@ -66,7 +66,7 @@ fn masked(mask: &Mask) -> Gpu {
 /// Whether the device has too few bindings of some kind for all tables, as `SwiftShader` has.
 fn offers_little(gpu: &Gpu) -> bool {
     let info = &gpu.device.info;
-    info.max_storage_buffers < 17 || info.max_storage_textures < 13
+    info.max_storage_buffers < MAX_TABLES + LEAST_BUFFERS || info.max_storage_textures < MAX_TABLES
 }
 
 fn assert_explained(who: &str, gpu: &Gpu, tier: Tier, scene: &Scene, settings: &Settings) {

@@ -145,6 +145,16 @@ fn check_doubts_a_name_that_render_refuses() {
     std::fs::write(place.path().join("scene.txt"), SCENE.replace("out.ppm", "out.jpg")).unwrap();
     let why = "warning: without -o there is no picture: out.jpg: pictures are written as .ppm or .png";
     assert_exit(&place.run("check scene.txt"), 0, why);
+    // File systems take 255 bytes, however many letters these are.
+    for (letters, fits) in [(250, true), (252, false)] {
+        let name = format!("ä{}.ppm", "n".repeat(letters - 1));
+        std::fs::write(place.path().join("scene.txt"), SCENE.replace("out.ppm", &name)).unwrap();
+        let why = if fits { "" } else { "its name has 257 bytes, and file systems take 255" };
+        let checked = place.run("check scene.txt");
+        assert_exit(&checked, 0, why);
+        assert_eq!(said(&checked).contains("there is no picture"), !fits);
+        assert_exit(&place.run("render --device cpu scene.txt"), if fits { 0 } else { 6 }, why);
+    }
 }
 
 #[test]

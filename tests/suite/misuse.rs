@@ -8,8 +8,8 @@ use trueray::engine::{Backend, Engine, Filler, Options, Pixels, render_partial, 
 use trueray::gpu::{Batch, Error, Kernel, ProbeRay, Prober, Question, RawBatch, Surface, echo_layout};
 use trueray::misuse::Misuse;
 use trueray::precision::Tier;
-use trueray::sampling::{Density, Fill, MAX_SIDE, Samples};
-use trueray::scene::Scene;
+use trueray::sampling::{Density, Fill, MAX_PIXELS, MAX_SIDE, Samples};
+use trueray::scene::{MAX_RESOLUTION, Scene};
 use trueray::settings::Settings;
 use trueray::tuning::Tuning;
 
@@ -80,16 +80,16 @@ fn pictures_out_of_range_are_refused() {
         for (scene, settings, name) in [
             (sized(0, 40), settings, "width"),
             (sized(40, 0), settings, "height"),
-            (sized((1 << 24) + 1, 1), settings, "width"),
+            (sized(MAX_RESOLUTION + 1, 1), settings, "width"),
             (sized(40, 40), Settings { samples_per_side: 0, ..settings }, "samples"),
-            (sized(40, 40), Settings { samples_per_side: 70_000, ..settings }, "samples"),
-            (sized(40, 40), Settings { max_depth: 1001, ..settings }, "max_depth"),
+            (sized(40, 40), Settings { samples_per_side: Settings::MAX_SAMPLES_PER_SIDE + 1, ..settings }, "samples"),
+            (sized(40, 40), Settings { max_depth: Settings::MAX_DEPTH + 1, ..settings }, "max_depth"),
         ] {
             let error = Engine::new(backend, scene.viewed(&settings), &effects).unwrap_err();
             assert!(matches!(&error, Error::Misuse(Misuse::Picture(why)) if why.contains(name)), "{error}");
         }
     }
-    for size in [(0, 5), (5, 0), (MAX_SIDE + 1, 1), (8192, 4097)] {
+    for size in [(0, 5), (5, 0), (MAX_SIDE + 1, 1), (8192, (MAX_PIXELS / 8192) as u32 + 1)] {
         assert!(matches!(Samples::new(size, &Density::FULL), Err(Misuse::Picture(_))), "{size:?}");
     }
     let samples = Samples::new(SIZE, &Density::FULL).unwrap();

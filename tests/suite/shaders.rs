@@ -7,8 +7,8 @@ use trueray::accel::{Acceleration, Lists};
 use trueray::effects::{Effect, EffectSet, Effects, Request};
 use trueray::gpu::layout::{double, single};
 use trueray::gpu::{
-    Kernel, Module, Parsed, Places, SEE_SAMPLES, SEE_TILES, SHADE_PATHS, SelfTest, Slots, Specialisation, Storage,
-    Tables, Variant, WALK_PATHS, Walk, echo_layout,
+    Kernel, Module, ParsedModule, SHADE_PATHS, Schedule, Secondary, SelfTest, Slots, Specialisation, Storage,
+    TRACE_SAMPLES, TRACE_TILES, Tables, Variant, WALK_PATHS, echo_layout,
 };
 
 use trueray::precision::Tier;
@@ -22,27 +22,27 @@ use rspirv::spirv::{Decoration, GlslStd450Op, Op, StorageClass};
 /// Every kernel, with each way to find what secondary rays meet, and some of the ways to read tables and to walk paths.
 fn kinds() -> impl Iterator<Item = Variant> {
     let kernels = Tier::ALL.map(Kernel::Tier).into_iter().chain([Kernel::Pairs]);
-    let in_turn = Walk::InTurn(NonZeroU32::new(5).unwrap());
+    let in_turn = Schedule::InTurn(NonZeroU32::new(5).unwrap());
     let ways = [
-        (Places::Grid, Tables::Stored, in_turn),
-        (Places::Grid, Tables::Sampled, Walk::AtOnce),
-        (Places::Grid, Tables::Stored, Walk::InPlace),
+        (Secondary::Grid, Tables::Stored, in_turn),
+        (Secondary::Grid, Tables::Sampled, Schedule::AtOnce),
+        (Secondary::Grid, Tables::Stored, Schedule::InPlace),
         // Where no sphere is in the grid, there is nothing to walk through in turn.
-        (Places::Large, Tables::Stored, Walk::AtOnce),
-        (Places::Large, Tables::Sampled, Walk::InPlace),
-        (Places::Both, Tables::Sampled, in_turn),
-        (Places::Both, Tables::Buffers, in_turn),
-        (Places::Grid, Tables::Buffers, Walk::InPlace),
+        (Secondary::Large, Tables::Stored, Schedule::AtOnce),
+        (Secondary::Large, Tables::Sampled, Schedule::InPlace),
+        (Secondary::Both, Tables::Sampled, in_turn),
+        (Secondary::Both, Tables::Buffers, in_turn),
+        (Secondary::Grid, Tables::Buffers, Schedule::InPlace),
     ];
     kernels.flat_map(move |kernel| {
-        ways.map(|(places, tables, walk)| Variant {
+        ways.map(|(secondary, tables, schedule)| Variant {
             kernel,
             storage: Storage::Tables(tables),
-            places,
+            secondary,
             samples: false,
             refraction: None,
             slots: Slots::Tiles,
-            walk,
+            schedule,
             dispatch_tiles: 8,
         })
     })
@@ -50,7 +50,7 @@ fn kinds() -> impl Iterator<Item = Variant> {
 
 /// What a pipeline of this variant may be specialised for.
 fn specialisation(variant: &Variant, effects: EffectSet, flags: usize) -> Specialisation {
-    let Variant { kernel, storage, places, refraction, slots, walk, .. } = *variant;
+    let Variant { kernel, storage, secondary, refraction, slots, schedule, .. } = *variant;
     let [shared_surfaces, blinn, count_rays] = [1, 2, 4].map(|bit| flags & bit != 0);
     let samples = if variant.samples { 2 } else { 1 };
     Specialisation {
@@ -61,9 +61,9 @@ fn specialisation(variant: &Variant, effects: EffectSet, flags: usize) -> Specia
         blinn,
         storage,
         lights: 2,
-        places,
+        secondary,
         sphere_count: 3,
-        walk,
+        schedule,
         samples,
         slots,
         count_rays,
@@ -74,14 +74,14 @@ fn specialisation(variant: &Variant, effects: EffectSet, flags: usize) -> Specia
 
 /// The kernels of a module.
 fn entry_points(variant: &Variant) -> Vec<&'static str> {
-    let see = match variant.slots {
-        Slots::Tiles => SEE_TILES,
-        Slots::List => SEE_SAMPLES,
+    let trace = match variant.slots {
+        Slots::Tiles => TRACE_TILES,
+        Slots::List => TRACE_SAMPLES,
     };
-    match (variant.refraction, variant.walk) {
-        (Some(_), _) | (None, Walk::InPlace) => vec![see],
-        (None, Walk::AtOnce) => vec![WALK_PATHS, see],
-        (None, Walk::InTurn(_)) => vec![WALK_PATHS, SHADE_PATHS, see],
+    match (variant.refraction, variant.schedule) {
+        (Some(_), _) | (None, Schedule::InPlace) => vec![trace],
+        (None, Schedule::AtOnce) => vec![WALK_PATHS, trace],
+        (None, Schedule::InTurn(_)) => vec![WALK_PATHS, SHADE_PATHS, trace],
     }
 }
 
@@ -94,7 +94,7 @@ fn every_effect_set_is_valid() {
     for kind in kinds() {
         let modules = [None, NonZeroU32::new(3)].map(|refraction| {
             let variant = Variant { refraction, ..kind };
-            (variant, Parsed::new(&Module::render(&variant)).unwrap())
+            (variant, ParsedModule::new(&Module::render(&variant)).unwrap())
         });
         for (index, effects) in EffectSet::every().enumerate() {
             let (variant, module) = &modules[usize::from(effects.has(Effect::Refraction))];
@@ -130,7 +130,7 @@ fn kernels_have_no_branch_that_is_known() {
         })
     }
     for variant in kinds() {
-        let module = Parsed::new(&Module::render(&variant)).unwrap();
+        let module = ParsedModule::new(&Module::render(&variant)).unwrap();
         let constants = specialisation(&variant, EffectSet::NONE, 0).constants();
         for entry_point in entry_points(&variant) {
             let module = module.specialised(entry_point, &constants).unwrap();
@@ -143,7 +143,7 @@ fn kernels_have_no_branch_that_is_known() {
 }
 
 /// The SPIR-V of this entry point.
-fn kernel(module: &Parsed, entry_point: &str, constants: &[(&str, f64)]) -> dr::Module {
+fn kernel(module: &ParsedModule, entry_point: &str, constants: &[(&str, f64)]) -> dr::Module {
     let specialised = module.specialised(entry_point, constants).unwrap();
     dr::load_words(module.spirv(&specialised, entry_point).unwrap()).unwrap()
 }
@@ -158,7 +158,7 @@ fn rendering_kernels() -> impl Iterator<Item = (String, dr::Module)> {
         kinds().map(move |kind| Variant { refraction, slots, samples: slots == Slots::List, ..kind })
     });
     variants.flat_map(move |variant| {
-        let module = Parsed::new(&Module::render(&variant)).unwrap();
+        let module = ParsedModule::new(&Module::render(&variant)).unwrap();
         let sets = [(EffectSet::ALL, 7), (few, 0)].into_iter();
         sets.flat_map(move |(effects, flags)| {
             let constants = specialisation(&variant, effects, flags).constants();
@@ -177,10 +177,10 @@ fn other_kernels() -> impl Iterator<Item = (String, dr::Module)> {
     let probes = all.map(Module::probe);
     let echoes = tiers.map(|kernel| Module::echo(kernel, Tables::Stored));
     let modules = probes.chain(echoes).chain(tiers.map(Module::resolve)).chain(Fill::ALL.map(Module::fill));
-    let modules = modules.chain([Module::selftest(), Module::flood(), Module::between_stages()]);
+    let modules = modules.chain([Module::selftest(), Module::flood(), Module::between_bounces()]);
     modules.flat_map(|module| {
         let entry_points = module.parse().unwrap().entry_points.into_iter().map(|entry| entry.name);
-        let module = Parsed::new(&module).unwrap();
+        let module = ParsedModule::new(&module).unwrap();
         entry_points.map(|entry| (entry.clone(), kernel(&module, &entry, &[]))).collect::<Vec<_>>()
     })
 }
@@ -326,7 +326,7 @@ fn products_of_vectors_are_written_out() {
         }
     "
     .into();
-    let kernel = kernel(&Parsed::new(&module).unwrap(), "main", &[]);
+    let kernel = kernel(&ParsedModule::new(&module).unwrap(), "main", &[]);
     assert_well_formed("products", &kernel);
     // Two products and their difference; then those of 2, 3 and 4 components and 1, 2 and 3 sums.
     assert_eq!(rounded_as_written("products", &kernel), 3 + 2 + 3 + 4);
@@ -350,7 +350,7 @@ fn calls_are_inlined_but_of_functions_that_return_early() {
         }
     "
     .into();
-    let kernel = kernel(&Parsed::new(&module).unwrap(), "main", &[]);
+    let kernel = kernel(&ParsedModule::new(&module).unwrap(), "main", &[]);
     let calls =
         |function: &dr::Function| function.all_inst_iter().filter(|it| it.class.opcode == Op::FunctionCall).count();
     // The one that returns early, without its own call, and the kernel with the call of it.
@@ -466,7 +466,7 @@ fn the_modules_are_valid_and_have_their_entry_points() {
         names.sort();
         names
     };
-    assert_eq!(found(Module::between_stages()), ["begin_bounce"]);
+    assert_eq!(found(Module::between_bounces()), ["begin_bounce"]);
     for kind in kinds() {
         assert_eq!(found(Module::resolve(kind.kernel)), ["resolve"]);
         for (samples, refraction, slots) in [
@@ -512,7 +512,7 @@ fn an_error_in_the_shader_names_its_file_and_line() {
     module.text = module.text.replace("fn reflection_ray(surface: Surface)", "fn reflection_ray(surface: Surfaze)");
     let error = module.parse().unwrap_err();
     assert!(error.contains(&format!("shaders/reflect.wgsl:{line_in_file}:")), "{error}");
-    assert_eq!(Parsed::new(&module).unwrap_err(), error);
+    assert_eq!(ParsedModule::new(&module).unwrap_err(), error);
 }
 
 #[test]

@@ -10,9 +10,9 @@ const TWINS: &str = "
     intersect: accepted_root any_hit approach blocks exit_of is_behind nearer_of nearest_secondary nearest_seen roots
     real: exp=exponential is_finite weakened
     refract: refraction_ray snell_at
-    render: levels=packed_pixel primary_ray resolve
+    render: levels primary_ray resolve
     shade: local_color specular_power specular_term surface_at with_light
-    trace: follow reflection_ray trace=see
+    trace: follow reflection_ray trace
     trace_refraction: tree_color
 ";
 

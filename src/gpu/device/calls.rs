@@ -5,8 +5,10 @@
 
 use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard};
 use std::time::Duration;
+
+use crate::threads::lock;
 
 /// The environment variable that sets [`patience`], in seconds.
 pub const PATIENCE: &str = "TRUERAY_PATIENCE";
@@ -20,7 +22,7 @@ static NEXT: AtomicU64 = AtomicU64::new(0);
 static OPEN: Mutex<BTreeSet<u64>> = Mutex::new(BTreeSet::new());
 
 fn open() -> MutexGuard<'static, BTreeSet<u64>> {
-    OPEN.lock().unwrap_or_else(PoisonError::into_inner)
+    lock(&OPEN)
 }
 
 /// How long a device may take for one thing. Only time in which this process runs counts: one that is stopped waits for nothing.

@@ -9,6 +9,7 @@ use ash::vk;
 use serde::Serialize;
 
 use super::drivers::install_hint;
+use crate::threads::lock;
 
 /// This variable, set to 1, lets wgpu use drivers that claim no conformance.
 const ADMITS: &str = "WGPU_ALLOW_UNDERLYING_NONCOMPLIANT_ADAPTER";
@@ -160,16 +161,13 @@ impl Diagnosis {
         if self.usable > 0 {
             reasons.push("a driver that failed before answers now: try again".into());
         }
-        let without = "`--device cpu` renders without any";
         if reasons.is_empty() {
             let chosen = chosen_drivers().map_or_else(String::new, |chosen| format!(" ({chosen})"));
-            return format!("no Vulkan device was found{chosen}. {}; {without}", install_hint());
+            return format!("no Vulkan device was found{chosen}. {}", install_hint());
         }
-        reasons.push(if self.hidden.is_empty() {
-            format!("help: {}; VK_LOADER_DEBUG=error shows what the Vulkan loader meets; {without}", install_hint())
-        } else {
-            format!("help: {without}")
-        });
+        if self.hidden.is_empty() {
+            reasons.push(format!("help: {}; VK_LOADER_DEBUG=error shows what the Vulkan loader meets", install_hint()));
+        }
         format!("no Vulkan device can be used:\n  {}", reasons.join("\n  "))
     }
 }
@@ -204,7 +202,7 @@ unsafe extern "system" fn hear(
         && !data.p_message.is_null()
     {
         let message = unsafe { CStr::from_ptr(data.p_message) }.to_string_lossy();
-        let mut messages = messages.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut messages = lock(messages);
         let matters = severity != vk::DebugUtilsMessageSeverityFlagsEXT::INFO || message.contains(INSERTS);
         if matters && !messages.iter().any(|other| *other == message) {
             messages.push(message.into_owned());

@@ -109,18 +109,17 @@ impl fmt::Display for Error {
             Self::Unsuitable { device, why } => write!(f, "{device} cannot be used: {why}"),
             Self::TooLarge { device, what, limit } => write!(f, "{device} is too small for {what}: {limit}"),
             Self::OutOfRange { kernel, why } => {
-                let help = "help: --precision double can, where the device has f64, and --device cpu";
+                let help = "help: --precision double can, where the device has f64";
                 write!(f, "{kernel} cannot render this scene: {why}\n  {help}")
             }
             Self::ArithmeticRefused { device, pairs, sums, products } => write!(
                 f,
                 "{device} does not keep error-free transforms: of {pairs} pairs, {sums} sums and {products} products are \
-                 off. Precision `robust` needs them, and `double` where a device has no f64; `--device cpu` does not"
+                 off. Precision `robust` needs them, and `double` where a device has no f64"
             ),
-            Self::Cut { device, pixels } => write!(
-                f,
-                "{pixels} pixels need more turns of a loop than {device} has for them; `--device cpu` has no such limit"
-            ),
+            Self::Cut { device, pixels } => {
+                write!(f, "{pixels} pixels need more turns of a loop than {device} has for them")
+            }
             Self::Shader(why) => write!(f, "a shader is not valid: {why}"),
             Self::OtherPicture { device, tuning } => {
                 write!(f, "{device} renders another picture with {tuning}: nothing is kept")

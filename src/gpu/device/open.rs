@@ -1,6 +1,6 @@
 //! An open device: its queue, what it reports, and how long it may take.
 
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock};
 use std::time::Duration;
 
 use super::calls::{self, Call};
@@ -10,6 +10,7 @@ use super::guard::guarded;
 use super::info::{DeviceInfo, DeviceKind};
 use super::mask::{Mask, Offer};
 use crate::gpu::shared::{LEAST_BUFFERS, LEAST_UNIFORM, TILE_PIXELS};
+use crate::threads::lock;
 
 /// An open device.
 #[derive(Debug)]
@@ -116,7 +117,7 @@ impl Device {
         let call = Call::begin();
         let value = action();
         drop(call);
-        match self.failure.lock().unwrap_or_else(PoisonError::into_inner).take() {
+        match lock(&self.failure).take() {
             None => Ok(value),
             Some(Failure::Limit(why)) => Err(Error::too_large(&self.info, what, why)),
             Some(Failure::Broken(why)) => Err(Error::Lost(format!("{what} on {}: {why}", self.info))),
@@ -173,5 +174,5 @@ fn does_not_open(info: &DeviceInfo, why: &str) -> Error {
 }
 
 fn note(slot: &Mutex<Option<Failure>>, failure: Failure) {
-    slot.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(failure);
+    lock(slot).get_or_insert(failure);
 }

@@ -1,7 +1,7 @@
 //! What can be done for a picture before there is a device to do it on: opening one takes longer than reading most scenes.
 
 use super::specialisation::Specialisation;
-use super::spirv::Parsed;
+use super::spirv::ParsedModule;
 use super::variant::{Kernel, Tables, Variant};
 use crate::accel::Acceleration;
 use crate::effects::Effects;
@@ -21,7 +21,7 @@ const MAX_SPHERES: usize = 2000;
 #[derive(Debug)]
 pub struct Ahead {
     variant: Variant,
-    module: Parsed,
+    module: ParsedModule,
 }
 
 impl Ahead {
@@ -36,7 +36,7 @@ impl Ahead {
         let grid = Acceleration::grid_of(viewed, effects.set, kernel.rounding(), &tuning.density);
         let specialisation =
             Specialisation::new(viewed, effects, kernel, &tuning, Tables::Stored).with_grid(grid.as_ref(), &tuning);
-        let module = Parsed::new(&specialisation.module()).ok()?;
+        let module = ParsedModule::new(&specialisation.module()).ok()?;
         Some(Self { variant: specialisation.variant(), module })
     }
 
@@ -46,7 +46,7 @@ impl Ahead {
     }
 
     /// The module of these kernels, if it is the one.
-    pub(super) fn module(&self, specialisation: &Specialisation) -> Option<&Parsed> {
+    pub(super) fn module(&self, specialisation: &Specialisation) -> Option<&ParsedModule> {
         (self.variant == specialisation.variant()).then_some(&self.module)
     }
 }

@@ -9,6 +9,8 @@ use std::sync::Mutex;
 use crate::cache;
 use crate::gpu::device::info::DeviceKind;
 use crate::gpu::device::open::Device;
+use crate::hash::{EMPTY, fnv1a};
+use crate::threads::lock;
 
 /// Set to 0, this variable keeps every device from using such a file; set to 1, it lets software devices use one.
 pub const SWITCH: &str = "TRUERAY_KERNEL_CACHE";
@@ -70,16 +72,16 @@ impl KernelCache {
     pub(super) fn save(&self) {
         let Some(data) = self.cache.get_data() else { return };
         let sum = checksum(&data);
-        let mut saved = self.saved.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let mut saved = lock(&self.saved);
         if *saved != Some(sum) && write(&self.path, sum, &data).is_ok() {
             *saved = Some(sum);
         }
     }
 }
 
-/// FNV-1a: it finds what a disk or an editor has done to a file.
+/// It finds what a disk or an editor has done to a file.
 fn checksum(data: &[u8]) -> u64 {
-    data.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+    fnv1a(EMPTY, data.iter().copied())
 }
 
 /// The data of a file; `None` where there is no file.

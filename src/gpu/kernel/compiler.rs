@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::bindings::Binding;
 use super::cache::KernelCache;
-use super::spirv::Parsed;
+use super::spirv::ParsedModule;
 use crate::gpu::device::error::Error;
 use crate::gpu::device::open::Device;
 
@@ -19,7 +19,7 @@ impl Compiler<'_> {
     /// The module of one kernel, and what it reads and writes.
     pub(super) fn module(
         self,
-        module: &Parsed,
+        module: &ParsedModule,
         entry_point: &str,
         constants: &[(&str, f64)],
     ) -> Result<(wgpu::ShaderModule, Vec<Binding>), Error> {
@@ -34,7 +34,7 @@ impl Compiler<'_> {
                 unsafe_code,
                 reason = "naga has validated the module; in its SPIR-V, which has some decorations more, functions stand in the \
                           place of their calls and products and sums in that of dot and cross products: tests hold that it is \
-                          well formed. It checks no index, for the reasons that Parsed::spirv gives"
+                          well formed. It checks no index, for the reasons that ParsedModule::spirv gives"
             )]
             unsafe {
                 self.device.raw.create_shader_module_passthrough(wgpu::ShaderModuleDescriptorPassthrough {

@@ -3,7 +3,7 @@
 
 use std::borrow::Cow;
 
-use super::variant::{Kernel, Places, Slots, Storage, Tables, Variant, Walk};
+use super::variant::{Kernel, Schedule, Secondary, Slots, Storage, Tables, Variant};
 use crate::brightness::Scalar;
 use crate::gpu::shared::declaration;
 use crate::precision::Tier;
@@ -24,14 +24,14 @@ macro_rules! files {
 }
 
 files! {
-    "barrier_bits" "barrier_none" "batch_plain" "batch_robust" "body_plain" "body_robust" "bounce" "counters" "difference_f32"
-    "difference_f64" "distance_pair" "distance_real" "echo" "effects" "eft" "elementary_f32" "elementary_f64" "entry_copied"
-    "entry_shared" "fill" "filled_nearest" "filled_smooth" "film_pixels" "film_samples" "flood" "grid" "intersect" "jump"
-    "kernel_plain" "kernel_robust" "kernel_schoolbook" "path_in_place" "path_kept" "path_tree" "probe" "quantize" "ray_plain"
-    "ray_robust" "real_f32" "real_f64" "reflect" "refract" "resolve" "roots_pair" "roots_single" "scene_ranges" "scene_tables"
-    "search_all" "search_lists" "secondary_both" "secondary_grid" "secondary_large" "see" "selftest" "shade" "slots_list"
-    "slots_tiles" "stage" "tables_buffers" "tables_textures" "texels" "texture_sampled" "texture_stored" "types" "vectors_f32"
-    "vectors_f64" "walk_at_once" "walk_in_turn"
+    "barrier_bits" "barrier_none" "batch_plain" "batch_robust" "body_plain" "body_robust" "bounce" "counters"
+    "difference_f32" "difference_f64" "distance_pair" "distance_real" "echo" "effects" "eft" "elementary_f32"
+    "elementary_f64" "entry_copied" "entry_shared" "fill" "filled_nearest" "filled_smooth" "film_pixels" "film_samples"
+    "flood" "grid" "intersect" "jump" "kernel_plain" "kernel_robust" "kernel_schoolbook" "path_in_place" "path_kept"
+    "path_tree" "probe" "quantize" "queue" "ray_plain" "ray_robust" "real_f32" "real_f64" "reflect" "refract" "resolve"
+    "roots_pair" "roots_single" "scene_ranges" "scene_tables" "search_all" "search_lists" "secondary_both" "secondary_grid"
+    "secondary_large" "selftest" "shade" "slots_list" "slots_tiles" "tables_buffers" "tables_textures" "texels"
+    "texture_sampled" "texture_stored" "trace" "types" "vectors_f32" "vectors_f64" "walk_at_once" "walk_in_turn"
 }
 
 /// One file of `shaders/`, or what the host declares.
@@ -104,7 +104,7 @@ impl Variant {
 
     /// Which file fills a slot that has several.
     fn of_slot(&self, slot: &str) -> Option<&'static str> {
-        let Self { kernel, storage, refraction, walk, .. } = *self;
+        let Self { kernel, storage, refraction, schedule, .. } = *self;
         let either = |is_first, first, second| if is_first { first } else { second };
         Some(match slot {
             "real" | "vectors" | "difference" | "elementary" => either(kernel.is_double(), "f64", "f32"),
@@ -121,17 +121,17 @@ impl Variant {
             "search" => either(storage == Storage::Ranges, "all", "lists"),
             "tables" => either(storage == Storage::Tables(Tables::Buffers), "buffers", "textures"),
             "texture" => either(storage == Storage::Tables(Tables::Sampled), "sampled", "stored"),
-            "secondary" => match self.places {
-                Places::Grid => "grid",
-                Places::Large => "large",
-                Places::Both => "both",
+            "secondary" => match self.secondary {
+                Secondary::Grid => "grid",
+                Secondary::Large => "large",
+                Secondary::Both => "both",
             },
             "entry" => either(self.copies(), "copied", "shared"),
             "film" => either(self.samples, "samples", "pixels"),
             "slots" => either(self.slots == Slots::List, "list", "tiles"),
             "path" if refraction.is_some() => "tree",
-            "path" => either(walk == Walk::InPlace, "in_place", "kept"),
-            "walk" => either(walk == Walk::AtOnce, "at_once", "in_turn"),
+            "path" => either(schedule == Schedule::InPlace, "in_place", "kept"),
+            "walk" => either(schedule == Schedule::AtOnce, "at_once", "in_turn"),
             _ => return None,
         })
     }

@@ -1,9 +1,9 @@
 //! The entry points of the kernels of a picture.
 
 /// The entry point that casts the primary rays of tiles.
-pub const SEE_TILES: &str = "see_tiles";
+pub const TRACE_TILES: &str = "trace_tiles";
 /// The entry point that casts the primary rays of a list of pixels.
-pub const SEE_SAMPLES: &str = "see_samples";
+pub const TRACE_SAMPLES: &str = "trace_samples";
 /// The entry point that casts the reflection rays of paths.
 pub const WALK_PATHS: &str = "walk_paths";
 /// The entry point that shades what they have met, where several share an invocation.

@@ -64,12 +64,12 @@ struct Inliner<'a> {
 
 /// What a function becomes.
 #[derive(Default)]
-struct Body {
+struct Inlined {
     variables: Vec<Instruction>,
     blocks: Vec<Block>,
 }
 
-impl Body {
+impl Inlined {
     fn push(&mut self, instruction: Instruction) {
         if let Some(block) = self.blocks.last_mut() {
             block.instructions.push(instruction);
@@ -78,9 +78,9 @@ impl Body {
 }
 
 /// The ids in a copy by those in the original.
-struct Names(Vec<u32>);
+struct IdMap(Vec<u32>);
 
-impl Names {
+impl IdMap {
     fn of(&self, id: u32) -> u32 {
         self.0[id as usize]
     }
@@ -100,11 +100,11 @@ impl Names {
 impl Inliner<'_> {
     fn without_calls(&mut self, function: &Function) -> Function {
         let Some(first) = function.blocks.first().filter(|_| !has_phi(function)) else { return function.clone() };
-        let mut body = Body::default();
+        let mut body = Inlined::default();
         body.blocks.push(Block { label: first.label.clone(), instructions: Vec::new() });
-        let names = Names((0..self.bound).collect());
+        let names = IdMap((0..self.bound).collect());
         self.copy(function, names, &mut body, false);
-        let Body { variables, mut blocks } = body;
+        let Inlined { variables, mut blocks } = body;
         blocks[0].instructions.splice(0..0, variables);
         Function {
             def: function.def.clone(),
@@ -115,7 +115,7 @@ impl Inliner<'_> {
     }
 
     /// Goes on in `body` with what `function` does, and gives its value where that is not where `body` returns.
-    fn copy(&mut self, function: &Function, mut names: Names, body: &mut Body, is_called: bool) -> Option<u32> {
+    fn copy(&mut self, function: &Function, mut names: IdMap, body: &mut Inlined, is_called: bool) -> Option<u32> {
         let mut value = None;
         for (index, block) in function.blocks.iter().enumerate() {
             if index > 0 {
@@ -154,7 +154,7 @@ impl Inliner<'_> {
     }
 
     /// New ids for all that `function` has, and those of the arguments for its parameters.
-    fn names(&mut self, function: &Function, arguments: impl Iterator<Item = u32>) -> Names {
+    fn names(&mut self, function: &Function, arguments: impl Iterator<Item = u32>) -> IdMap {
         let mut names: Vec<u32> = (0..self.bound).collect();
         let parameters = function.parameters.iter().filter_map(|parameter| parameter.result_id);
         for (parameter, argument) in parameters.zip(arguments) {
@@ -165,6 +165,6 @@ impl Inliner<'_> {
             names[result as usize] = self.next_id;
             self.next_id += 1;
         }
-        Names(names)
+        IdMap(names)
     }
 }

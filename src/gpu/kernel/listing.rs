@@ -6,11 +6,11 @@ use rspirv::binary::Disassemble;
 use rspirv::dr;
 
 use super::compose::Part;
-use super::entry::{BEGIN_BOUNCE, RESOLVE, SEE_SAMPLES, SEE_TILES, SHADE_PATHS, WALK_PATHS};
+use super::entry::{BEGIN_BOUNCE, RESOLVE, SHADE_PATHS, TRACE_SAMPLES, TRACE_TILES, WALK_PATHS};
 use super::module::Module;
 use super::specialisation::Specialisation;
-use super::spirv::Parsed;
-use super::variant::{Slots, Walk};
+use super::spirv::ParsedModule;
+use super::variant::{Schedule, Slots};
 
 impl Module {
     /// The text with a line before each part that names its file and the slot that this fills.
@@ -27,12 +27,12 @@ impl Specialisation {
     /// The entry points of a picture's kernels, in the order in which they run; those of a bounce run once for each.
     pub fn entry_points(&self) -> Vec<&'static str> {
         let mut names = vec![match self.slots {
-            Slots::Tiles => SEE_TILES,
-            Slots::List => SEE_SAMPLES,
+            Slots::Tiles => TRACE_TILES,
+            Slots::List => TRACE_SAMPLES,
         }];
         if self.keeps_paths() {
             names.extend([BEGIN_BOUNCE, WALK_PATHS]);
-            names.extend(matches!(self.walk, Walk::InTurn(_)).then_some(SHADE_PATHS));
+            names.extend(matches!(self.schedule, Schedule::InTurn(_)).then_some(SHADE_PATHS));
         }
         names.extend((self.samples > 1).then_some(RESOLVE));
         names
@@ -41,7 +41,7 @@ impl Specialisation {
     /// The module of an entry point.
     pub fn module_of(&self, entry_point: &str) -> Module {
         match entry_point {
-            BEGIN_BOUNCE => Module::between_stages(),
+            BEGIN_BOUNCE => Module::between_bounces(),
             RESOLVE => Module::resolve(self.kernel),
             _ => self.module(),
         }
@@ -62,7 +62,7 @@ impl Specialisation {
     ///
     /// What the compiler says, with file and line.
     pub fn disassembly(&self, entry_point: &str) -> Result<String, String> {
-        let module = Parsed::new(&self.module_of(entry_point))?;
+        let module = ParsedModule::new(&self.module_of(entry_point))?;
         let specialised = module.specialised(entry_point, &self.constants_of(entry_point))?;
         let words = module.spirv(&specialised, entry_point)?;
         let module = dr::load_words(words).map_err(|error| error.to_string())?;

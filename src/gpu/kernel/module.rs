@@ -23,8 +23,8 @@ impl Module {
         Self::of(&files.iter().map(String::as_str).collect::<Vec<_>>(), variant)
     }
 
-    /// The module that goes from one stage to the next.
-    pub fn between_stages() -> Self {
+    /// The module that goes from one bounce to the next.
+    pub fn between_bounces() -> Self {
         Self::of(&["bounce"], &Variant::of_ranges(Kernel::Tier(Tier::Fast)))
     }
 

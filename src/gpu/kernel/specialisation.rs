@@ -4,7 +4,7 @@ use std::num::NonZeroU32;
 
 use super::entry::{BEGIN_BOUNCE, RESOLVE};
 use super::module::Module;
-use super::variant::{Kernel, Places, Slots, Storage, Tables, Variant, Walk};
+use super::variant::{Kernel, Schedule, Secondary, Slots, Storage, Tables, Variant};
 use crate::accel::Grid;
 use crate::effects::{Effect, EffectSet, Effects};
 use crate::gpu::shared::{UNIFORM, dispatch_tiles};
@@ -30,11 +30,11 @@ pub struct Specialisation {
     /// Number of lights.
     pub lights: u32,
     /// Where the spheres are that secondary rays look for.
-    pub places: Places,
+    pub secondary: Secondary,
     /// How many there are, where all are outside the grid.
     pub sphere_count: u32,
-    /// How paths are walked, where nothing refracts.
-    pub walk: Walk,
+    /// How the bounces of paths are scheduled, where nothing refracts.
+    pub schedule: Schedule,
     /// Side of the grid of samples in a pixel.
     pub samples: u32,
     /// Which pixels a dispatch renders.
@@ -60,9 +60,9 @@ impl Specialisation {
             blinn: settings.specular == Specular::Blinn,
             storage: Storage::Tables(tables),
             lights: scene.lights.len() as u32,
-            places: Places::Both,
+            secondary: Secondary::Both,
             sphere_count: 0,
-            walk: Walk::InPlace,
+            schedule: Schedule::InPlace,
             samples: settings.samples_per_side,
             slots: Slots::Tiles,
             count_rays: false,
@@ -74,28 +74,28 @@ impl Specialisation {
     /// For the grid that rays which leave a surface look through, if there are any.
     pub(crate) fn with_grid(self, grid: Option<&Grid>, tuning: &Tuning) -> Self {
         // Without such rays nobody looks for any sphere.
-        let Some(grid) = grid else { return Self { places: Places::Large, sphere_count: 1, ..self } };
-        let places = match grid.large().len() {
-            0 => Places::Grid,
-            large if large == grid.lists.entries.len() => Places::Large,
-            _ => Places::Both,
+        let Some(grid) = grid else { return Self { secondary: Secondary::Large, sphere_count: 1, ..self } };
+        let secondary = match grid.large().len() {
+            0 => Secondary::Grid,
+            large if large == grid.lists.entries.len() => Secondary::Large,
+            _ => Secondary::Both,
         };
         let entries = grid.lists.entries.len() as f64;
-        let walk = match NonZeroU32::new(tuning.paths) {
+        let schedule = match NonZeroU32::new(tuning.paths) {
             // There are trees instead.
-            _ if self.refraction.is_some() => Walk::AtOnce,
-            _ if !self.effects.has(Effect::Reflections) || entries < tuning.in_place_below => Walk::InPlace,
-            Some(paths) if places != Places::Large && entries >= tuning.in_turn_from => Walk::InTurn(paths),
-            _ => Walk::AtOnce,
+            _ if self.refraction.is_some() => Schedule::AtOnce,
+            _ if !self.effects.has(Effect::Reflections) || entries < tuning.in_place_below => Schedule::InPlace,
+            Some(paths) if secondary != Secondary::Large && entries >= tuning.in_turn_from => Schedule::InTurn(paths),
+            _ => Schedule::AtOnce,
         };
-        let sphere_count = if places == Places::Large { grid.large().len() as u32 } else { 0 };
-        Self { places, sphere_count, walk, ..self }
+        let sphere_count = if secondary == Secondary::Large { grid.large().len() as u32 } else { 0 };
+        Self { secondary, sphere_count, schedule, ..self }
     }
 
     /// What decides the text of its kernels.
     pub(crate) fn variant(&self) -> Variant {
-        let Self { kernel, storage, places, refraction, slots, walk, dispatch_tiles, .. } = *self;
-        Variant { kernel, storage, places, samples: self.samples > 1, refraction, slots, walk, dispatch_tiles }
+        let Self { kernel, storage, secondary, refraction, slots, schedule, dispatch_tiles, .. } = *self;
+        Variant { kernel, storage, secondary, samples: self.samples > 1, refraction, slots, schedule, dispatch_tiles }
     }
 
     /// Whether the intersection reads second halves of shapes.
@@ -127,14 +127,14 @@ impl Specialisation {
         ];
         if self.keeps_paths() {
             constants.push(("VECTORS", self.path_vectors() as f64));
-            let paths = match self.walk {
-                Walk::InTurn(paths) => paths.get(),
-                Walk::InPlace | Walk::AtOnce => 1,
+            let paths = match self.schedule {
+                Schedule::InTurn(paths) => paths.get(),
+                Schedule::InPlace | Schedule::AtOnce => 1,
             };
             constants.push(("PATHS", f64::from(paths)));
         }
         if self.storage != Storage::Ranges {
-            if self.places == Places::Large {
+            if self.secondary == Secondary::Large {
                 constants.push(("SPHERE_COUNT", f64::from(self.sphere_count)));
             }
             constants.push(("LIGHT_COUNT", f64::from(self.lights)));
@@ -172,7 +172,7 @@ impl Specialisation {
 
     /// Whether the loops of an invocation walk more than one bounce of one path.
     pub(crate) fn shares_turns(&self) -> bool {
-        self.refraction.is_none() && self.effects.has(Effect::Reflections) && self.walk != Walk::AtOnce
+        self.refraction.is_none() && self.effects.has(Effect::Reflections) && self.schedule != Schedule::AtOnce
     }
 
     /// The module that renders.

@@ -23,14 +23,14 @@ use super::products::expand_products;
 
 /// A module that is parsed.
 #[derive(Debug)]
-pub struct Parsed {
+pub struct ParsedModule {
     module: naga::Module,
     info: ModuleInfo,
     /// Whether drivers may fuse, reorder and leave out operations.
     contractible: bool,
 }
 
-impl Parsed {
+impl ParsedModule {
     /// Parses `module`; an error names the file and line.
     pub fn new(module: &Module) -> Result<Self, String> {
         let module = module.parse()?;

@@ -1,17 +1,18 @@
 //! The compiled kernels of a device: of earlier runs, of other pictures, and those that are begun before it is open.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use super::ahead::Ahead;
 use super::cache::KernelCache;
 use super::compiler::Compiler;
-use super::pipeline::{Stages, compile};
+use super::picture::{Pipelines, compile};
 use super::specialisation::Specialisation;
 use crate::gpu::device::error::Error;
 use crate::gpu::device::open::Device;
+use crate::threads::lock;
 
 /// Compiled kernels, those used last at the end.
-type Kept = Vec<(Specialisation, Arc<Stages>)>;
+type RecentlyUsed = Vec<(Specialisation, Arc<Pipelines>)>;
 
 /// Kernels of one device.
 #[derive(Debug)]
@@ -21,7 +22,7 @@ pub(crate) struct KernelStore {
     /// What was done before the device was open.
     ahead: Option<Ahead>,
     /// Compiled kernels that are used again; `None` where every renderer compiles its own.
-    kept: Option<Mutex<Kept>>,
+    recent: Option<Mutex<RecentlyUsed>>,
     /// For so many specialisations they are kept; one more drops the one that was not used for the longest time.
     most: usize,
 }
@@ -29,7 +30,7 @@ pub(crate) struct KernelStore {
 impl KernelStore {
     /// For a device that has compiled nothing yet.
     pub(crate) fn open(device: &Device) -> Self {
-        Self { cache: KernelCache::open(device), ahead: None, kept: None, most: 0 }
+        Self { cache: KernelCache::open(device), ahead: None, recent: None, most: 0 }
     }
 
     /// Uses what was done before the device was open.
@@ -39,7 +40,7 @@ impl KernelStore {
 
     /// From now on kernels are kept for other pictures.
     pub(crate) fn keeping(self, most: usize) -> Self {
-        Self { kept: Some(Mutex::default()), most, ..self }
+        Self { recent: Some(Mutex::default()), most, ..self }
     }
 
     /// Why compiled kernels of earlier runs are not used, where they could be.
@@ -53,29 +54,29 @@ impl KernelStore {
     }
 
     /// The kernels of a picture, and whether another picture has used them before.
-    pub(crate) fn stages(
+    pub(crate) fn pipelines(
         &self,
         device: &Device,
         specialisation: &Specialisation,
-    ) -> Result<(Arc<Stages>, bool), Error> {
-        let kept = || self.kept.as_ref().map(|kept| kept.lock().unwrap_or_else(PoisonError::into_inner));
-        if let Some(mut kept) = kept()
-            && let Some(index) = kept.iter().position(|(key, _)| key == specialisation)
+    ) -> Result<(Arc<Pipelines>, bool), Error> {
+        let recent = || self.recent.as_ref().map(lock);
+        if let Some(mut recent) = recent()
+            && let Some(index) = recent.iter().position(|(key, _)| key == specialisation)
         {
-            kept[index..].rotate_left(1);
-            return Ok((Arc::clone(&kept[kept.len() - 1].1), true));
+            recent[index..].rotate_left(1);
+            return Ok((Arc::clone(&recent[recent.len() - 1].1), true));
         }
         let ahead = self.ahead.as_ref().and_then(|ahead| ahead.module(specialisation));
-        let stages = Arc::new(compile(self.compiler(device), ahead, specialisation)?);
+        let pipelines = Arc::new(compile(self.compiler(device), ahead, specialisation)?);
         if let Some(cache) = &self.cache {
             cache.save();
         }
-        if let Some(mut kept) = kept() {
-            if kept.len() == self.most {
-                kept.remove(0);
+        if let Some(mut recent) = recent() {
+            if recent.len() == self.most {
+                recent.remove(0);
             }
-            kept.push((*specialisation, Arc::clone(&stages)));
+            recent.push((*specialisation, Arc::clone(&pipelines)));
         }
-        Ok((stages, false))
+        Ok((pipelines, false))
     }
 }

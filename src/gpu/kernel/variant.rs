@@ -59,7 +59,7 @@ impl Kernel {
 
 /// Where the spheres are that secondary rays look for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Places {
+pub enum Secondary {
     /// All in the cells of the grid.
     Grid,
     /// All too large for the cells of the grid, or so few.
@@ -88,9 +88,9 @@ pub enum Storage {
     Ranges,
 }
 
-/// How paths are walked.
+/// How the bounces of paths are scheduled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Walk {
+pub enum Schedule {
     /// To the end, by the invocation that casts the primary ray.
     InPlace,
     /// A bounce at a time: one an invocation, which also shades what it meets.
@@ -116,41 +116,41 @@ pub struct Variant {
     /// How spheres and lights reach it.
     pub storage: Storage,
     /// Where the spheres are that secondary rays look for.
-    pub places: Places,
+    pub secondary: Secondary,
     /// Whether a pixel has several samples.
     pub samples: bool,
     /// Where something refracts, how many rays wait at the most.
     pub refraction: Option<NonZeroU32>,
     /// Which pixels a dispatch renders.
     pub slots: Slots,
-    /// How paths are walked, where nothing refracts.
-    pub walk: Walk,
+    /// How the bounces of paths are scheduled, where nothing refracts.
+    pub schedule: Schedule,
     /// Tiles of a dispatch at the most.
     pub dispatch_tiles: u32,
 }
 
 impl Variant {
     /// For a kernel that renders no picture: with spheres in storage buffers, and whatever for the rest.
-    pub(super) fn of_ranges(kernel: Kernel) -> Self {
+    pub(crate) fn of_ranges(kernel: Kernel) -> Self {
         Self {
             kernel,
             storage: Storage::Ranges,
-            places: Places::Large,
+            secondary: Secondary::Large,
             samples: false,
             refraction: None,
             slots: Slots::Tiles,
-            walk: Walk::InPlace,
+            schedule: Schedule::InPlace,
             dispatch_tiles: 0,
         }
     }
 
     /// Whether paths are kept from bounce to bounce.
     pub fn keeps_paths(&self) -> bool {
-        self.refraction.is_none() && self.walk != Walk::InPlace
+        self.refraction.is_none() && self.schedule != Schedule::InPlace
     }
 
     /// Whether walks read copies of the spheres in the order of the grid's lists.
     pub fn copies(&self) -> bool {
-        self.refraction.is_none() && matches!(self.walk, Walk::InTurn(_)) && !self.kernel.carries_low()
+        self.refraction.is_none() && matches!(self.schedule, Schedule::InTurn(_)) && !self.kernel.carries_low()
     }
 }

@@ -40,24 +40,17 @@ impl TileWords {
 
 #[cfg(test)]
 mod tests {
-    use super::super::STAGE_SIZE;
+    use super::super::PATH_QUEUE_SIZE;
     use super::*;
     use crate::gpu::kernel::module::Module;
-    use crate::gpu::kernel::variant::{Kernel, Places, Slots, Storage, Tables, Variant, Walk};
+    use crate::gpu::kernel::variant::{Kernel, Schedule, Secondary, Storage, Tables, Variant};
     use crate::precision::Tier;
 
     #[test]
     fn structs_are_as_large_as_the_kernels_have_them() {
-        let variant = Variant {
-            kernel: Kernel::Tier(Tier::Fast),
-            storage: Storage::Tables(Tables::Stored),
-            places: Places::Both,
-            samples: false,
-            refraction: None,
-            slots: Slots::Tiles,
-            walk: Walk::AtOnce,
-            dispatch_tiles: 8,
-        };
+        let (storage, secondary, schedule) = (Storage::Tables(Tables::Stored), Secondary::Both, Schedule::AtOnce);
+        let plain = Variant::of_ranges(Kernel::Tier(Tier::Fast));
+        let variant = Variant { storage, secondary, schedule, dispatch_tiles: 8, ..plain };
         let module = Module::render(&variant).parse();
         let size_of = |name: &str| {
             let types = module.iter().flat_map(|module| module.types.iter());
@@ -67,7 +60,7 @@ mod tests {
             });
             sizes.next()
         };
-        assert_eq!([size_of("Tiles"), size_of("Stage")], [Some(tiles_size(8)), Some(STAGE_SIZE)]);
+        assert_eq!([size_of("Tiles"), size_of("PathQueue")], [Some(tiles_size(8)), Some(PATH_QUEUE_SIZE)]);
     }
 
     #[test]

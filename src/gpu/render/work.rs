@@ -6,15 +6,15 @@ use super::tiles::{TILE_PIXELS, tiles_size};
 use crate::gpu::device::readable::Readable;
 use crate::gpu::device::upload::small_buffer;
 use crate::gpu::facade::Gpu;
-use crate::gpu::kernel::pipeline::Stages;
+use crate::gpu::kernel::picture::Pipelines;
+use crate::gpu::kernel::pipeline::{Pipeline, Resource};
 use crate::gpu::kernel::specialisation::Specialisation;
-use crate::gpu::kernel::stage::{Resource, Stage};
-use crate::gpu::kernel::variant::{Slots, Walk};
+use crate::gpu::kernel::variant::{Schedule, Slots};
 use crate::gpu::shared::WORKGROUP_WORDS;
 use crate::gpu::table::bind::empty_table;
 
-/// Bytes of the shader's `Stage`.
-pub(super) const STAGE_SIZE: u64 = 8;
+/// Bytes of the shader's `PathQueue`.
+pub(super) const PATH_QUEUE_SIZE: u64 = 8;
 
 /// Bytes of a slot's ray counts in `shaders/counters.wgsl`.
 pub(super) const RAY_COUNT_SIZE: u64 = 8;
@@ -22,8 +22,8 @@ pub(super) const RAY_COUNT_SIZE: u64 = 8;
 /// The compiled kernels with their buffers.
 #[derive(Debug)]
 pub(super) struct Work {
-    pub(super) stages: Arc<Stages>,
-    pub(super) see_group: wgpu::BindGroup,
+    pub(super) pipelines: Arc<Pipelines>,
+    pub(super) trace_group: wgpu::BindGroup,
     /// For what goes before a bounce.
     pub(super) begin_group: Option<wgpu::BindGroup>,
     /// For a bounce, by whether another one follows, and from which of the two tables of paths to the other.
@@ -32,7 +32,7 @@ pub(super) struct Work {
     pub(super) shade_groups: Option<[[wgpu::BindGroup; 2]; 2]>,
     pub(super) resolve_group: Option<wgpu::BindGroup>,
     pub(super) tiles: wgpu::Buffer,
-    pub(super) stage: wgpu::Buffer,
+    pub(super) path_queue: wgpu::Buffer,
     /// Workgroups of the next bounce: of the kernel with a path an invocation, and of the one with several.
     pub(super) workgroups: wgpu::Buffer,
     pub(super) pixels: Readable,
@@ -44,7 +44,7 @@ pub(super) struct Work {
 impl Work {
     pub(super) fn new(
         gpu: &Gpu,
-        stages: Arc<Stages>,
+        pipelines: Arc<Pipelines>,
         resources: &[(&'static str, Resource)],
         capacity: u32,
         specialisation: &Specialisation,
@@ -61,21 +61,21 @@ impl Work {
         let ray_counts = Readable::new(device, if specialisation.count_rays { slots * RAY_COUNT_SIZE / 4 } else { 2 });
         let paths = specialisation.path_size() * if specialisation.keeps_paths() { slots } else { 1 };
         let paths = [0, 1].map(|_| empty_table(device, tables, paths, 4));
-        let in_turn = matches!(specialisation.walk, Walk::InTurn(_));
+        let in_turn = matches!(specialisation.schedule, Schedule::InTurn(_));
         let hits = empty_table(device, tables, if in_turn { 4 * slots } else { 4 }, 1);
         let tiles = match specialisation.slots {
             Slots::Tiles => empty(tiles_size(specialisation.dispatch_tiles), wgpu::BufferUsages::UNIFORM | copied),
             Slots::List => empty((1 + pixel_count) * 8, storage | copied),
         };
-        let stage = empty(STAGE_SIZE, storage | copied);
+        let path_queue = empty(PATH_QUEUE_SIZE, storage | copied);
         let workgroups = empty(4 * u64::from(WORKGROUP_WORDS), storage | wgpu::BufferUsages::INDIRECT);
-        let colors = stages.resolve.as_ref().map(|_| empty(slots * specialisation.color_size(), storage));
+        let colors = pipelines.resolve.as_ref().map(|_| empty(slots * specialisation.color_size(), storage));
         let mut all = resources.to_vec();
         let mut bind = |name, buffer: &wgpu::Buffer| all.push((name, Resource::Buffer(buffer.clone())));
         bind("tiles", &tiles);
         bind("list", &tiles);
         bind("ray_counts", &ray_counts.buffer);
-        bind("stage", &stage);
+        bind("path_queue", &path_queue);
         bind("pixels", &pixels.buffer);
         bind("workgroups", &workgroups);
         if let Some(colors) = &colors {
@@ -83,7 +83,7 @@ impl Work {
         }
         let has_next =
             [0_u32, 1].map(|has_next| small_buffer(device, bytemuck::bytes_of(&has_next), wgpu::BufferUsages::UNIFORM));
-        let turn = |stage: &Stage, from: usize, goes_on: usize| {
+        let turn = |pipeline: &Pipeline, from: usize, goes_on: usize| {
             let [from, to] = [from, 1 - from].map(|half| paths[half].clone());
             let has_next = Resource::Buffer(has_next[goes_on].clone());
             let hits = hits.clone();
@@ -94,24 +94,24 @@ impl Work {
                 ("hits", hits.clone()),
                 ("kept_hits", hits),
             ];
-            stage.bind(device, &[&all[..], &turn].concat())
+            pipeline.bind(device, &[&all[..], &turn].concat())
         };
-        let see_group = turn(&stages.see, 1, usize::from(has_bounces));
-        let begin_group = stages.bounce.as_ref().map(|bounce| bounce.begin.bind(device, &all));
-        let all_turns = |stage| [0, 1].map(|goes_on| [0, 1].map(|from| turn(stage, from, goes_on)));
-        let walk_groups = stages.bounce.as_ref().map(|bounce| all_turns(&bounce.walk));
-        let shade = stages.bounce.as_ref().and_then(|bounce| bounce.shade.as_ref());
+        let trace_group = turn(&pipelines.trace, 1, usize::from(has_bounces));
+        let begin_group = pipelines.bounce.as_ref().map(|bounce| bounce.begin.bind(device, &all));
+        let all_turns = |pipeline| [0, 1].map(|goes_on| [0, 1].map(|from| turn(pipeline, from, goes_on)));
+        let walk_groups = pipelines.bounce.as_ref().map(|bounce| all_turns(&bounce.walk));
+        let shade = pipelines.bounce.as_ref().and_then(|bounce| bounce.shade.as_ref());
         let shade_groups = shade.map(all_turns);
-        let resolve_group = stages.resolve.as_ref().map(|resolve| resolve.bind(device, &all));
+        let resolve_group = pipelines.resolve.as_ref().map(|resolve| resolve.bind(device, &all));
         Self {
-            stages,
-            see_group,
+            pipelines,
+            trace_group,
             begin_group,
             walk_groups,
             shade_groups,
             resolve_group,
             tiles,
-            stage,
+            path_queue,
             workgroups,
             pixels,
             ray_counts,

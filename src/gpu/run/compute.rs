@@ -6,8 +6,8 @@ use crate::gpu::device::readable::Readable;
 use crate::gpu::device::upload::{small_buffer, texels};
 use crate::gpu::kernel::compiler::Compiler;
 use crate::gpu::kernel::module::Module;
-use crate::gpu::kernel::spirv::Parsed;
-use crate::gpu::kernel::stage::{Resource, Stage};
+use crate::gpu::kernel::pipeline::{Pipeline, Resource};
+use crate::gpu::kernel::spirv::ParsedModule;
 
 /// A kernel with its buffers.
 pub(super) struct Job<'a> {
@@ -32,13 +32,13 @@ impl Job<'_> {
     }
 
     fn run_once(&self, compiler: Compiler) -> Result<Vec<u32>, Error> {
-        let module = Parsed::new(self.module).map_err(Error::Shader)?;
-        let stage = Stage::new(compiler, &module, self.entry_point, &[])?;
+        let module = ParsedModule::new(self.module).map_err(Error::Shader)?;
+        let pipeline = Pipeline::new(compiler, &module, self.entry_point, &[])?;
         let device = compiler.device;
         let results = device.checked(self.what, || {
             let results = Readable::new(device, self.output_len as u64);
             let mut resources = vec![(self.output, Resource::Buffer(results.buffer.clone()))];
-            for binding in &stage.bindings {
+            for binding in &pipeline.bindings {
                 // There is one more than the inputs: the output.
                 let input = self.inputs.iter().find(|(name, _)| *name == binding.name);
                 let Some(&(name, contents)) = input else { continue };
@@ -54,7 +54,7 @@ impl Job<'_> {
                 };
                 resources.push((name, resource?));
             }
-            stage.dispatch(device, &stage.bind(device, &resources), [self.groups, 1]);
+            pipeline.dispatch(device, &pipeline.bind(device, &resources), [self.groups, 1]);
             Ok::<_, Error>(results)
         })??;
         results.read(device, self.output_len, <[u32]>::to_vec)

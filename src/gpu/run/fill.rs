@@ -10,8 +10,8 @@ use crate::gpu::device::upload::small_buffer;
 use crate::gpu::facade::Gpu;
 use crate::gpu::kernel::compiler::Compiler;
 use crate::gpu::kernel::module::Module;
-use crate::gpu::kernel::spirv::Parsed;
-use crate::gpu::kernel::stage::{Resource, Stage};
+use crate::gpu::kernel::pipeline::{Pipeline, Resource};
+use crate::gpu::kernel::spirv::ParsedModule;
 use crate::gpu::shared::SMALL_GROUP;
 use crate::misuse::check_colors;
 use crate::sampling::{Fill, NO_SAMPLE, Samples, flood_steps, packed};
@@ -20,15 +20,15 @@ use crate::sampling::{Fill, NO_SAMPLE, Samples, flood_steps, packed};
 #[derive(Debug)]
 pub struct Reconstructor<'a> {
     compiler: Compiler<'a>,
-    jump: Stage,
-    fills: HashMap<Fill, Stage>,
+    jump: Pipeline,
+    fills: HashMap<Fill, Pipeline>,
 }
 
 impl<'a> Reconstructor<'a> {
     /// Compiles the kernel that finds nearest samples.
     pub fn new(gpu: &'a Gpu) -> Result<Self, Error> {
         let compiler = gpu.compiler();
-        let jump = compiler.device.guarded(|| stage(compiler, &Module::flood(), "jump"))?;
+        let jump = compiler.device.guarded(|| pipeline(compiler, &Module::flood(), "jump"))?;
         Ok(Self { compiler, jump, fills: HashMap::new() })
     }
 
@@ -54,7 +54,7 @@ impl<'a> Reconstructor<'a> {
         let owners = self.flood(samples)?;
         let kernel = match self.fills.entry(fill) {
             Entry::Occupied(entry) => entry.into_mut(),
-            Entry::Vacant(entry) => entry.insert(stage(self.compiler, &Module::fill(fill), "fill")?),
+            Entry::Vacant(entry) => entry.insert(pipeline(self.compiler, &Module::fill(fill), "fill")?),
         };
         let mut known = vec![0_u32; pixel_count(samples)];
         for (pixel, &[r, g, b]) in samples.pixels().iter().zip(colors) {
@@ -134,20 +134,20 @@ fn storage(device: &Device, values: &[u32]) -> wgpu::Buffer {
     small_buffer(device, bytemuck::cast_slice(values), wgpu::BufferUsages::STORAGE)
 }
 
-fn stage(compiler: Compiler, module: &Module, entry_point: &str) -> Result<Stage, Error> {
-    Stage::new(compiler, &Parsed::new(module).map_err(Error::Shader)?, entry_point, &[])
+fn pipeline(compiler: Compiler, module: &Module, entry_point: &str) -> Result<Pipeline, Error> {
+    Pipeline::new(compiler, &ParsedModule::new(module).map_err(Error::Shader)?, entry_point, &[])
 }
 
-fn bind(device: &Device, stage: &Stage, buffers: &[(&str, &wgpu::Buffer)]) -> wgpu::BindGroup {
+fn bind(device: &Device, pipeline: &Pipeline, buffers: &[(&str, &wgpu::Buffer)]) -> wgpu::BindGroup {
     let resources = buffers.iter().map(|&(name, buffer)| (name, Resource::Buffer(buffer.clone())));
-    stage.bind(device, &resources.collect::<Vec<_>>())
+    pipeline.bind(device, &resources.collect::<Vec<_>>())
 }
 
 /// Runs a kernel over all pixels, once for each group.
-fn run(device: &Device, stage: &Stage, samples: &Samples, groups: &[wgpu::BindGroup]) {
+fn run(device: &Device, pipeline: &Pipeline, samples: &Samples, groups: &[wgpu::BindGroup]) {
     let (width, height) = samples.size();
     // A dispatch of its own for each, so that none is long; workgroups lie in rows.
     for group in groups {
-        stage.dispatch(device, group, [width.div_ceil(SMALL_GROUP), height]);
+        pipeline.dispatch(device, group, [width.div_ceil(SMALL_GROUP), height]);
     }
 }

@@ -15,10 +15,10 @@ use crate::gpu::device::readable::Readable;
 use crate::gpu::device::upload::small_buffer;
 use crate::gpu::facade::Gpu;
 use crate::gpu::kernel::module::Module;
+use crate::gpu::kernel::pipeline::{Pipeline, Resource};
 use crate::gpu::kernel::specialisation::Specialisation;
-use crate::gpu::kernel::spirv::Parsed;
-use crate::gpu::kernel::stage::{Resource, Stage};
-use crate::gpu::kernel::variant::{Kernel, Places, Slots, Storage, Walk};
+use crate::gpu::kernel::spirv::ParsedModule;
+use crate::gpu::kernel::variant::{Kernel, Schedule, Secondary, Slots, Storage};
 use crate::gpu::shared;
 use crate::gpu::table::layout::{Layout, ListValues, ParamValues, ShapeValues, double, single};
 use crate::gpu::table::pack::{bytes, low_light, low_shape, shape_value};
@@ -191,27 +191,17 @@ pub struct RawBatch {
     pub shapes: Vec<[ShapeValues; 2]>,
 }
 
-/// Bytes of one dispatch.
-struct Inputs {
-    shapes: Vec<u8>,
-    shapes_low: Vec<u8>,
-    materials: Vec<u8>,
-    glasses: Vec<u8>,
-    lights: Vec<u8>,
-    lights_low: Vec<u8>,
-    reals: Vec<u8>,
-    reals_low: Vec<u8>,
-    words: Vec<[u32; 4]>,
-}
+/// Bytes of one dispatch, by the shader's name for them.
+type Inputs = Vec<(&'static str, Vec<u8>)>;
 
 /// A kernel on a device that answers batches of rays.
 #[derive(Debug)]
 pub struct Prober<'a> {
     gpu: &'a Gpu,
     kernel: Kernel,
-    module: Parsed,
+    module: ParsedModule,
     /// By question, and whether object space is more than a translation.
-    stages: HashMap<(Question, bool), Stage>,
+    pipelines: HashMap<(Question, bool), Pipeline>,
     busy: Duration,
 }
 
@@ -222,9 +212,9 @@ impl<'a> Prober<'a> {
             Kernel::Tier(tier) => gpu.kernel(tier)?,
             kernel => kernel,
         };
-        let module = Parsed::new(&Module::probe(kernel)).map_err(Error::Shader)?;
+        let module = ParsedModule::new(&Module::probe(kernel)).map_err(Error::Shader)?;
         let module = if kernel == Kernel::NoBarrier { module.contractible() } else { module };
-        Ok(Self { gpu, kernel, module, stages: HashMap::new(), busy: Duration::ZERO })
+        Ok(Self { gpu, kernel, module, pipelines: HashMap::new(), busy: Duration::ZERO })
     }
 
     /// Its kernel.
@@ -261,9 +251,9 @@ impl<'a> Prober<'a> {
             let lights = batch.lights.iter().skip(chunk * MAX_RAYS).take(rays.len());
             let lights: Vec<_> = lights.map(|&position| Light { position, intensity: DVec3::ONE }).collect();
             let bounces = matches!(question, Question::Bounce | Question::Refract).then_some(batch.bounces);
-            let part = Part { rays, surfaces, first, lights, bounces, ellipsoids, batch };
+            let chunk = Chunk { rays, surfaces, first, lights, bounces, ellipsoids, batch };
             let inputs =
-                if self.kernel.is_double() { part.pack::<double::Layout>() } else { part.pack::<single::Layout>() };
+                if self.kernel.is_double() { chunk.pack::<double::Layout>() } else { chunk.pack::<single::Layout>() };
             self.dispatch((question, ellipsoids), &inputs, rays.len(), first, &mut answers)?;
         }
         Ok(answers)
@@ -290,7 +280,7 @@ impl<'a> Prober<'a> {
     }
 
     fn prepare(&mut self, question: Question, ellipsoids: bool) -> Result<(), Error> {
-        if self.stages.contains_key(&(question, ellipsoids)) {
+        if self.pipelines.contains_key(&(question, ellipsoids)) {
             return Ok(());
         }
         let specialisation = Specialisation {
@@ -301,9 +291,9 @@ impl<'a> Prober<'a> {
             blinn: question == Question::Highlight { blinn: true },
             storage: Storage::Ranges,
             lights: 0,
-            places: Places::Large,
+            secondary: Secondary::Large,
             sphere_count: 0,
-            walk: Walk::InPlace,
+            schedule: Schedule::InPlace,
             count_rays: false,
             workgroup: 64,
             samples: 1,
@@ -311,8 +301,8 @@ impl<'a> Prober<'a> {
             dispatch_tiles: 0,
         };
         let constants = specialisation.constants();
-        let stage = Stage::new(self.gpu.compiler(), &self.module, question.entry_point(), &constants)?;
-        self.stages.insert((question, ellipsoids), stage);
+        let pipeline = Pipeline::new(self.gpu.compiler(), &self.module, question.entry_point(), &constants)?;
+        self.pipelines.insert((question, ellipsoids), pipeline);
         Ok(())
     }
 
@@ -325,7 +315,7 @@ impl<'a> Prober<'a> {
         answers: &mut Vec<Answer>,
     ) -> Result<(), Error> {
         let (question, _) = asked;
-        let Some(stage) = self.stages.get(&asked) else { return Ok(()) };
+        let Some(pipeline) = self.pipelines.get(&asked) else { return Ok(()) };
         let device = &self.gpu.device;
         let padded = count.next_multiple_of(GROUP);
         let real = if self.kernel.is_double() { 8 } else { 4 };
@@ -334,29 +324,18 @@ impl<'a> Prober<'a> {
         let size = question.values();
         let values = Readable::new(device, (padded * size * real / 4) as u64);
         let group = device.checked("reserving buffers", || {
-            let buffer = |(name, contents, usage): (&'static str, &[u8], wgpu::BufferUsages)| {
+            let bound = |name, contents: &[u8], usage| {
                 let contents = if contents.is_empty() { &[0; 256] } else { contents };
                 (name, Resource::Buffer(small_buffer(device, contents, usage)))
             };
-            let storage = wgpu::BufferUsages::STORAGE;
-            let inputs: [(&str, &[u8], wgpu::BufferUsages); 10] = [
-                ("given_params", &params, wgpu::BufferUsages::UNIFORM),
-                ("shapes", &inputs.shapes, storage),
-                ("materials", &inputs.materials, storage),
-                ("lights", &inputs.lights, storage),
-                ("shapes_low", &inputs.shapes_low, storage),
-                ("lights_low", &inputs.lights_low, storage),
-                ("glasses", &inputs.glasses, storage),
-                ("probe_reals", &inputs.reals, storage),
-                ("probe_low", &inputs.reals_low, storage),
-                ("probe_words", bytemuck::cast_slice(&inputs.words), storage),
-            ];
+            let params = bound("given_params", &params, wgpu::BufferUsages::UNIFORM);
+            let inputs = inputs.iter().map(|(name, contents)| bound(*name, contents, wgpu::BufferUsages::STORAGE));
             let outputs = [("probe_flags", &flags), ("probe_values", &values)];
             let outputs = outputs.map(|(name, output)| (name, Resource::Buffer(output.buffer.clone())));
-            stage.bind(device, &inputs.into_iter().map(buffer).chain(outputs).collect::<Vec<_>>())
+            pipeline.bind(device, &inputs.chain([params]).chain(outputs).collect::<Vec<_>>())
         })?;
         let start = Instant::now();
-        stage.dispatch(device, &group, [(padded / GROUP) as u32, 1]);
+        pipeline.dispatch(device, &group, [(padded / GROUP) as u32, 1]);
         device.wait()?;
         self.busy += start.elapsed();
         let flags = flags.read(device, count * 2, <[u32]>::to_vec)?;
@@ -411,7 +390,7 @@ fn reals<L: Layout>(values: impl Iterator<Item = [f64; 6]>, count: usize) -> Vec
 }
 
 /// What of a batch one dispatch answers.
-struct Part<'a> {
+struct Chunk<'a> {
     rays: &'a [ProbeRay],
     /// Those that the rays can meet, from this one of the batch on.
     surfaces: &'a [Surface],
@@ -423,7 +402,7 @@ struct Part<'a> {
     batch: &'a Batch,
 }
 
-impl Part<'_> {
+impl Chunk<'_> {
     fn pack<L: Layout>(&self) -> Inputs {
         let Self { rays, first, .. } = *self;
         let sphere = |s: &Surface| Sphere {
@@ -459,17 +438,18 @@ impl Part<'_> {
         lights.extend(std::iter::repeat_n(Light { position: DVec3::ZERO, intensity: DVec3::ONE }, padding));
         let mut words: Vec<_> = rays.iter().map(words).collect();
         words.extend(std::iter::repeat_n([0; 4], padding));
-        Inputs {
-            shapes: bytes(shapes.iter().map(L::shape)),
-            shapes_low: bytes(shapes.iter().map(|s| L::shape(&low_shape::<L>(s)))),
-            materials: bytes(spheres.iter().zip(&ellipsoids).map(material)),
-            glasses: bytes(spheres.iter().map(L::glass)),
-            lights: bytes(lights.iter().map(L::light)),
-            lights_low: bytes(lights.iter().map(|light| L::light(&low_light::<L>(light)))),
-            reals: reals::<L>(rays.iter().map(numbers), rays.len()),
-            reals_low: reals::<L>(rays.iter().map(|ray| numbers(ray).map(L::residual)), rays.len()),
-            words,
-        }
+        let numbers = rays.iter().map(numbers);
+        vec![
+            ("shapes", bytes(shapes.iter().map(L::shape))),
+            ("shapes_low", bytes(shapes.iter().map(|s| L::shape(&low_shape::<L>(s))))),
+            ("materials", bytes(spheres.iter().zip(&ellipsoids).map(material))),
+            ("glasses", bytes(spheres.iter().map(L::glass))),
+            ("lights", bytes(lights.iter().map(L::light))),
+            ("lights_low", bytes(lights.iter().map(|light| L::light(&low_light::<L>(light))))),
+            ("probe_reals", reals::<L>(numbers.clone(), rays.len())),
+            ("probe_low", reals::<L>(numbers.map(|all| all.map(L::residual)), rays.len())),
+            ("probe_words", bytes(words)),
+        ]
     }
 }
 
@@ -478,15 +458,11 @@ fn pack_raw<L: Layout>(rays: &[[[f64; 6]; 2]], shapes: &[[ShapeValues; 2]]) -> I
     let real = |part: usize| reals::<L>(rays.iter().map(|ray| ray[part]), rays.len());
     let mut words: Vec<_> = (0..rays.len() as u32).map(|i| [i, i + 1, 1, 0]).collect();
     words.resize(rays.len().next_multiple_of(GROUP), [0; 4]);
-    Inputs {
-        shapes: part(0),
-        shapes_low: part(1),
-        materials: Vec::new(),
-        glasses: Vec::new(),
-        lights: Vec::new(),
-        lights_low: Vec::new(),
-        reals: real(0),
-        reals_low: real(1),
-        words,
-    }
+    vec![
+        ("shapes", part(0)),
+        ("shapes_low", part(1)),
+        ("probe_reals", real(0)),
+        ("probe_low", real(1)),
+        ("probe_words", bytes(words)),
+    ]
 }

@@ -13,6 +13,7 @@ use crate::gpu::kernel::variant::Kernel;
 use crate::gpu::shared::SMALL_GROUP;
 use crate::gpu::table::layout::single::Params;
 use crate::precision::Tier;
+use crate::random::Random;
 
 /// Pairs that are transformed.
 const PAIRS: usize = 1 << 18;
@@ -92,19 +93,11 @@ fn record_of_pass(gpu: &Gpu) -> Option<PathBuf> {
     Some(cache::folder()?.join(format!("transforms-{key}")))
 }
 
-/// Operands of all signs whose exponents differ by up to 40, from `SplitMix64` (Steele, Lea, Flood, "Fast splittable
-/// pseudorandom number generators", 2014).
+/// Operands of all signs whose exponents differ by up to 40.
 fn operands() -> Vec<[f32; 2]> {
-    let mut state = 0_u64;
-    let mut next = || {
-        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    };
+    let mut random = Random::new(0, 0);
     let mut operand = || {
-        let bits = next();
+        let bits = random.bits();
         let exponent = 107 + (bits >> 32) as u32 % 41;
         f32::from_bits((bits as u32 & 0x807f_ffff) | (exponent << 23))
     };

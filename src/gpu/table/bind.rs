@@ -6,8 +6,8 @@ use crate::gpu::device::contents::Contents;
 use crate::gpu::device::error::Error;
 use crate::gpu::device::open::Device;
 use crate::gpu::device::upload::{empty_texels, max_texels, upload, upload_texels};
+use crate::gpu::kernel::pipeline::{Resource, Resources};
 use crate::gpu::kernel::specialisation::Specialisation;
-use crate::gpu::kernel::stage::{Resource, Resources};
 use crate::gpu::kernel::variant::Tables;
 
 /// How textures that are tables are bound; `None` for tables in buffers.
@@ -163,7 +163,7 @@ pub(crate) fn check_fits(device: &Device, tables: Tables, packed: &Packed, lists
         Some((what, size, limit)) => Err(Error::too_large(
             &device.info,
             "this scene",
-            format!("the {what} take {size} bytes, and it holds {limit} at the most; `--device cpu` has no such limit"),
+            format!("the {what} take {size} bytes, and it holds {limit} at the most"),
         )),
     }
 }

@@ -277,7 +277,7 @@ pub(super) fn guess(token: &[u8]) -> Guess {
 fn similar(upper: &[u8]) -> Option<Keyword> {
     let begins = |keyword: &Keyword| upper.starts_with(keyword.text().as_bytes());
     let near = |keyword: Keyword| {
-        let text = keyword.text().as_bytes();
+        let text = keyword.text();
         let most = if text.len() <= 4 { 1 } else { 2 };
         Some((slips(upper, text), keyword)).filter(|&(slips, _)| slips <= most)
     };

@@ -1,46 +1,10 @@
 //! How far a picture is from another one, in levels and in linear colour.
 
-use std::fmt;
-
 use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::cpu::{Real, Reference};
-use crate::film::PictureError;
-use crate::gpu;
-
-/// Why a study ends early.
-#[derive(Debug)]
-pub enum Error {
-    /// The device.
-    Device(gpu::Error),
-    /// A picture of an impossible size.
-    Picture(PictureError),
-}
-
-impl fmt::Display for Error {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Device(error) => error.fmt(f),
-            Self::Picture(error) => error.fmt(f),
-        }
-    }
-}
-
-impl std::error::Error for Error {}
-
-impl From<gpu::Error> for Error {
-    fn from(error: gpu::Error) -> Self {
-        Self::Device(error)
-    }
-}
-
-impl From<PictureError> for Error {
-    fn from(error: PictureError) -> Self {
-        Self::Picture(error)
-    }
-}
 
 /// The distance of one picture from another of the same size.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

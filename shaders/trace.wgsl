@@ -1,7 +1,7 @@
 // One sample of one pixel: its primary ray, and what follows from it.
 // needs: counters, effects, film, path, ray, search
 
-fn see(pixel: vec2<u32>, first_slot: u32, sample: u32) {
+fn trace(pixel: vec2<u32>, first_slot: u32, sample: u32) {
     let slot = first_slot + sample;
     begin(slot);
     let ray = primary_ray(pixel * SAMPLES + vec2(sample % SAMPLES, sample / SAMPLES));
