@@ -8,7 +8,7 @@ struct Walk {
     origin: vec3<f32>,
     // t for each cell's width.
     inverse: vec3<f32>,
-    // t at which the ray leaves the grid; before 0 where it misses it.
+    // t at which the ray leaves the grid; below 0 where it misses it.
     leave: f32,
     // 1 or -1 along each axis, and what that adds to the index of the cell.
     step: vec3<f32>,
@@ -41,8 +41,8 @@ fn begin_walk(ray: Ray) -> Walk {
     let cell = i32(params.grid_first) + dot(vec3<i32>(place), strides);
     return Walk(
         origin,
-        inverse,
-        // A ray that misses the grid has left it.
+        // A ray that misses the grid has left it, and finds all its walls at 0: from far off they are anywhere.
+        select(vec3<f32>(), inverse, is_inside),
         select(-1.0, last, is_inside),
         step,
         select(-strides, strides, is_ahead),
