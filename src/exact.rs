@@ -5,11 +5,11 @@
 
 use std::cmp::Ordering;
 
-use dashu_ratio::RBig;
 use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::camera::Camera;
+use crate::decimal::Decimal;
 use crate::geometry::Ellipsoid;
 use crate::scene::Sphere;
 use crate::viewed::ViewedScene;
@@ -69,60 +69,80 @@ impl TangentMargin {
 /// The rays from the eye.
 #[derive(Debug, Clone, Default)]
 pub struct ExactCamera {
-    eye: [RBig; 3],
+    eye: [Decimal; 3],
     /// The picture's axes in the world.
-    axes: [[RBig; 3]; 3],
-    /// Left edge, what the right one adds, and the columns of samples between them.
-    across: [RBig; 3],
-    /// Top edge, what the bottom one adds, and the rows of samples between them.
-    down: [RBig; 3],
+    axes: [[Decimal; 3]; 3],
+    across: Edges,
+    down: Edges,
+    near: Decimal,
+}
+
+/// Where the samples of a row or of a column lie.
+#[derive(Debug, Clone, Default)]
+struct Edges {
+    /// The edge where they begin.
+    first: Decimal,
+    /// What the other edge adds.
+    size: Decimal,
+    /// Samples between them.
+    count: Decimal,
     /// Where in its cell a sample lies.
-    offset: [RBig; 2],
-    near: RBig,
+    offset: Decimal,
+}
+
+impl Edges {
+    fn new([first, last]: [f64; 2], count: [u32; 2], offset: f64) -> Self {
+        let [first, last, offset] = [first, last, offset].map(Decimal::shortest);
+        let [pixels, samples] = count.map(Decimal::from);
+        Self { size: &last - &first, first, count: &pixels * &samples, offset }
+    }
+
+    /// The place of the sample with this index, times their count.
+    fn place(&self, index: u32) -> Decimal {
+        let Self { first, size, count, offset } = self;
+        &(first * count) + &(size * &(&Decimal::from(index) + offset))
+    }
 }
 
 impl ExactCamera {
     /// Of the scene as the file has it.
     pub fn new(viewed: &ViewedScene) -> Self {
         let (scene, settings) = viewed.in_file();
-        let window = scene.window;
-        let [left, right, top, bottom] = [window.left, window.right, window.top, window.bottom].map(exact);
-        let [columns, rows] =
-            [scene.width, scene.height].map(|size| RBig::from(u64::from(size) * u64::from(settings.samples_per_side)));
+        let (window, side) = (scene.window, settings.samples_per_side);
         let (x, y) = settings.sampling.offset();
         Self {
             eye: vector(settings.view.eye),
             axes: settings.view.axes().map(vector),
-            across: [left.clone(), right - left, columns],
-            down: [top.clone(), bottom - top, rows],
-            offset: [x, y].map(exact),
-            near: exact(window.near),
+            across: Edges::new([window.left, window.right], [scene.width, side], x),
+            down: Edges::new([window.top, window.bottom], [scene.height, side], y),
+            near: Decimal::shortest(window.near),
         }
     }
 
-    /// The way to the image plane along the ray of the sample in this column and row of samples.
-    fn direction(&self, [column, row]: [u32; 2]) -> [RBig; 3] {
-        let [dx, dy] = &self.offset;
-        let place = |[edge, size, count]: &[RBig; 3], index: u32, offset: &RBig| {
-            edge + size * ((RBig::from(index) + offset) / count)
-        };
-        let x = place(&self.across, column, dx);
-        let y = place(&self.down, row, dy);
+    /// The way to the image plane along the ray of the sample in this column and row of samples, times the counts of both.
+    fn direction(&self, [column, row]: [u32; 2]) -> [Decimal; 3] {
+        let Self { across, down, near, .. } = self;
+        let x = &across.place(column) * &down.count;
+        let y = &down.place(row) * &across.count;
+        let z = near * &(&across.count * &down.count);
         let [right, up, back] = &self.axes;
-        std::array::from_fn(|axis| &right[axis] * &x + &up[axis] * &y - &back[axis] * &self.near)
+        std::array::from_fn(|axis| &(&(&right[axis] * &x) + &(&up[axis] * &y)) - &(&back[axis] * &z))
     }
 
     /// The sign of B² − AC for the ray of a sample and the ellipsoid around `center` with these semi-axes: less where the line
     /// misses it, equal where it touches it.
     pub fn discriminant(&self, sample: [u32; 2], center: DVec3, semi_axes: DVec3) -> Ordering {
-        let (center, semi_axes) = (vector(center), vector(semi_axes));
+        let (center, [a, b, c]) = (vector(center), &vector(semi_axes));
         let direction = self.direction(sample);
-        // In object space, where the ellipsoid is the unit sphere: B² − AC = A − |S' × c'|².
-        let d: [RBig; 3] = std::array::from_fn(|axis| &direction[axis] / &semi_axes[axis]);
-        let s: [RBig; 3] = std::array::from_fn(|axis| (&self.eye[axis] - &center[axis]) / &semi_axes[axis]);
-        let moment = [[1, 2], [2, 0], [0, 1]].map(|[i, j]| &s[i] * &d[j] - &s[j] * &d[i]);
-        let squared = |v: &[RBig; 3]| v.iter().fold(RBig::ZERO, |sum, x| sum + x * x);
-        squared(&d).cmp(&squared(&moment))
+        // In object space, where the ellipsoid is the unit sphere: B² − AC = A − |S' × c'|². Vectors are there times the product
+        // of the semi-axes, which spares quotients.
+        let others = [b * c, c * a, a * b];
+        let d: [Decimal; 3] = std::array::from_fn(|axis| &direction[axis] * &others[axis]);
+        let s: [Decimal; 3] = std::array::from_fn(|axis| &(&self.eye[axis] - &center[axis]) * &others[axis]);
+        let moment = [[1, 2], [2, 0], [0, 1]].map(|[i, j]| &(&s[i] * &d[j]) - &(&s[j] * &d[i]));
+        let squared = |v: &[Decimal; 3]| v.iter().fold(Decimal::default(), |sum, x| &sum + &(x * x));
+        let product = a * &others[0];
+        (&(&squared(&d) * &(&product * &product)) - &squared(&moment)).sign()
     }
 }
 
@@ -150,39 +170,6 @@ impl ExactScene {
     }
 }
 
-fn vector(v: DVec3) -> [RBig; 3] {
-    v.to_array().map(exact)
-}
-
-/// The shortest decimal that reads as `x`, which is finite.
-fn exact(x: f64) -> RBig {
-    let text = format!("{x:e}");
-    let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
-    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
-    let exponent = exponent.parse::<i32>().unwrap_or_default() - i32::try_from(fraction.len()).unwrap_or_default();
-    let zeros = "0".repeat(exponent.unsigned_abs() as usize);
-    let text = if exponent < 0 { format!("{whole}{fraction}/1{zeros}") } else { format!("{whole}{fraction}{zeros}") };
-    text.parse().unwrap_or(RBig::ZERO)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_are_the_decimals_of_the_file() {
-        for (x, text) in [
-            (0.1, "1/10"),
-            (-1.1, "-11/10"),
-            (0.0, "0"),
-            (-0.0, "0"),
-            (3.0, "3"),
-            (1e22, "10000000000000000000000"),
-            (-2.5e-7, "-1/4000000"),
-            (123_456.75, "493827/4"),
-        ] {
-            assert_eq!(exact(x).to_string(), text);
-        }
-        assert!(exact(f64::MAX) > exact(1e308) && exact(5e-324) > RBig::ZERO);
-    }
+fn vector(v: DVec3) -> [Decimal; 3] {
+    v.to_array().map(Decimal::shortest)
 }

@@ -58,6 +58,7 @@ pub mod cli;
 pub mod compare;
 #[doc(hidden)]
 pub mod cpu;
+mod decimal;
 #[doc(hidden)]
 pub mod doubts;
 #[doc(hidden)]

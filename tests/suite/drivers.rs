@@ -57,6 +57,7 @@ fn compiled_kernels_are_kept_and_a_damaged_file_is_told_and_replaced() {
         let mut command = Command::new(env!("CARGO_BIN_EXE_trueray"));
         command.args(["render", "scene.txt", "-v", "-o", "out.ppm", "--device", &index.to_string()]);
         command.current_dir(folder.path()).env("XDG_CACHE_HOME", folder.path()).env(kernel_cache::SWITCH, switch);
+        command.env("MESA_SHADER_CACHE_DIR", crate::support::driver_cache());
         let output = command.output().unwrap();
         assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
         (std::fs::read(folder.path().join("out.ppm")).unwrap(), String::from_utf8(output.stderr).unwrap())

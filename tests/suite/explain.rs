@@ -16,7 +16,7 @@ use trueray::scene::{Scene, parse};
 use trueray::settings::{Settings, Specular};
 use trueray::stress::Random;
 
-use crate::support::{cpu_picture, gpu, gpu_picture, root, scene, scene_files, scene_of};
+use crate::support::{Case, cpu_picture, gpu, gpu_picture, root, scene, scene_files, scene_of};
 
 const FOLDERS: [&str; 5] = ["basic", "effects", "refraction", "hard", "show"];
 
@@ -35,55 +35,28 @@ fn scenes(pixels: u32) -> impl Iterator<Item = (String, Scene)> {
     })
 }
 
-/// A scene with its reference and the reference's picture.
-struct Case<'a> {
-    scene: &'a Scene,
-    settings: Settings,
-    effects: Effects,
-    reference: Reference<f64>,
-    expected: Picture,
+/// The case's picture in another scalar.
+fn picture<T: Real>(case: &Case) -> Picture {
+    cpu_picture::<T>(&case.scene, &case.settings, &case.effects).0
 }
 
-impl<'a> Case<'a> {
-    fn new(scene: &'a Scene, settings: Settings) -> Self {
-        let effects = Effects::of(&scene.viewed(&settings));
-        let reference = Reference::new(&scene.viewed(&settings), &effects);
-        let expected = cpu_picture::<f64>(scene, &settings, &effects).0;
-        Self { scene, settings, effects, reference, expected }
-    }
+/// What `auto` takes on software devices.
+fn tier(case: &Case) -> Tier {
+    let ladder = [Tier::Fast, Tier::Double, Tier::Robust];
+    Selection::of(&case.scene.viewed(&case.settings), &case.effects, precision::Request(None), &ladder).tier
+}
 
-    fn picture<T: Real>(&self) -> Picture {
-        cpu_picture::<T>(self.scene, &self.settings, &self.effects).0
-    }
-
-    fn explained(&self, picture: &Picture, judge: Judge) -> Explanation {
-        Explanation::of(picture, &self.expected, &self.reference, &judge)
-    }
-
-    /// What `auto` takes on software devices.
-    fn tier(&self) -> Tier {
-        let ladder = [Tier::Fast, Tier::Double, Tier::Robust];
-        Selection::of(&self.scene.viewed(&self.settings), &self.effects, precision::Request(None), &ladder).tier
-    }
-
-    /// The unclamped colours of the reference in `T`, by the margins of `f32`.
-    #[track_caller]
-    fn assert_colors_explained<T: Real>(&self, what: &str) {
-        let trial = Judge::of(Tier::Fast).trial(&self.reference);
-        let other = Reference::<T>::new(&self.scene.viewed(&self.settings), &self.effects);
-        let (width, height) = self.reference.size();
-        for [i, j] in (0..height).flat_map(|j| (0..width).map(move |i| [i, j])) {
-            let color = other.color(i, j).unwrap();
-            let finding = trial.explain_color(i, j, color);
-            let exact = self.reference.color(i, j).unwrap();
-            assert!(matches!(finding, Finding::Explained(_)), "{what}: x {i}, y {j}: {color} for {exact}: {finding:?}");
-        }
-    }
-
-    #[track_caller]
-    fn assert_explained(&self, what: &str, picture: &Picture, judge: Judge) {
-        let explanation = self.explained(picture, judge);
-        assert_eq!(explanation.unexplained, 0, "{what}:\n{}", explanation.report());
+/// The unclamped colours of the reference in `T`, by the margins of `f32`.
+#[track_caller]
+fn assert_colors_explained<T: Real>(case: &Case, what: &str) {
+    let trial = Judge::of(Tier::Fast).trial(&case.reference);
+    let other = Reference::<T>::new(&case.scene.viewed(&case.settings), &case.effects);
+    let (width, height) = case.reference.size();
+    for [i, j] in (0..height).flat_map(|j| (0..width).map(move |i| [i, j])) {
+        let color = other.color(i, j).unwrap();
+        let finding = trial.explain_color(i, j, color);
+        let exact = case.reference.color(i, j).unwrap();
+        assert!(matches!(finding, Finding::Explained(_)), "{what}: x {i}, y {j}: {color} for {exact}: {finding:?}");
     }
 }
 
@@ -120,9 +93,9 @@ fn faulty_renderers(case: &Case) -> Vec<(&'static str, Picture)> {
     let unshadowed =
         Effects::requested(&case.scene.viewed(&case.settings), &Request::Changed(vec![(Effect::Shadows, false)]));
     vec![
-        ("depth 1", render(case.scene, &Settings { max_depth: 1, ..case.settings })),
+        ("depth 1", render(&case.scene, &Settings { max_depth: 1, ..case.settings })),
         ("Kr a third more", changed(|scene| scene.spheres.iter_mut().for_each(|s| s.kr *= 4.0 / 3.0))),
-        ("no shadows", cpu_picture::<f64>(case.scene, &case.settings, &unshadowed).0),
+        ("no shadows", cpu_picture::<f64>(&case.scene, &case.settings, &unshadowed).0),
         ("a hundredth larger", changed(|scene| scene.spheres.iter_mut().for_each(|s| s.scale *= 1.01))),
     ]
 }
@@ -152,8 +125,8 @@ fn wrong_pictures_stay_unexplained() {
     let mut worst = Vec::new();
     for (name, scene) in scenes(10_000) {
         for settings in conventions() {
-            let case = Case::new(&scene, settings);
-            let judge = Judge::of(case.tier());
+            let case = Case::new(&scene, &settings);
+            let judge = Judge::of(tier(&case));
             for (least, mistakes) in [(0.99, gross_mistakes(&case)), (0.95, faulty_renderers(&case))] {
                 let mut all = Found::default();
                 for (what, wrong) in mistakes {
@@ -182,7 +155,7 @@ fn small_mistakes_are_found_in_ordinary_scenes() {
         let mut found = Found::default();
         for file in ["basic/seventeen-lights", "basic/odd-size", "effects/everything", "show/showcase"] {
             let scene = scene(&root().join(format!("scenes/{file}.txt")));
-            let case = Case::new(&scene, Settings::classic());
+            let case = Case::new(&scene, &Settings::classic());
             let mut grown = scene.clone();
             grown.spheres.iter_mut().for_each(|sphere| sphere.scale *= 1.0 + growth);
             let wrong = cpu_picture::<f64>(&grown, &case.settings, &case.effects).0;
@@ -342,19 +315,19 @@ fn random_scene(seed: u64, width: u32) -> Scene {
 #[test]
 fn right_pictures_of_random_scenes_are_explained() {
     let number = |variable, default| std::env::var(variable).map_or(default, |value| value.parse().unwrap());
-    let (count, width) = (number("TRUERAY_EXPLAIN_SCENES", 48), number("TRUERAY_EXPLAIN_WIDTH", 96) as u32);
+    let (count, width) = (number("TRUERAY_EXPLAIN_SCENES", 48), number("TRUERAY_EXPLAIN_WIDTH", 64) as u32);
     let gpu = gpu("right_pictures_of_random_scenes_are_explained");
     let (mut pixels, mut differing) = (0, 0);
     for seed in 0..count {
         let scene = random_scene(seed, width);
         for settings in conventions() {
             let deep = Settings { samples_per_side: 2, specular: Specular::Blinn, max_depth: 5, ..settings };
-            let case = Case::new(&scene, if seed % 5 == 4 { deep } else { settings });
+            let case = Case::new(&scene, if seed % 5 == 4 { &deep } else { &settings });
             let name = |what| format!("seed {seed}, {:?}, {what}", settings.sampling);
             let mut pictures = vec![
-                ("f32", case.picture::<f32>(), Judge::of(Tier::Fast)),
-                ("loose", case.picture::<Loose>(), Judge::of(Tier::Fast)),
-                ("double-double", case.picture::<Dd>(), Judge::of(Tier::Double)),
+                ("f32", picture::<f32>(&case), Judge::of(Tier::Fast)),
+                ("loose", picture::<Loose>(&case), Judge::of(Tier::Fast)),
+                ("double-double", picture::<Dd>(&case), Judge::of(Tier::Double)),
             ];
             if let Some(gpu) = &gpu {
                 for tier in Tier::ALL.into_iter().filter(|&tier| gpu.kernel(tier).is_ok()) {
@@ -363,12 +336,11 @@ fn right_pictures_of_random_scenes_are_explained() {
                 }
             }
             // Each colour, not only those at a step.
-            case.assert_colors_explained::<f32>(&name("f32"));
-            case.assert_colors_explained::<Loose>(&name("loose"));
+            assert_colors_explained::<f32>(&case, &name("f32"));
+            assert_colors_explained::<Loose>(&case, &name("loose"));
             for (what, picture, judge) in pictures {
-                case.assert_explained(&name(what), &picture, judge);
                 pixels += case.expected.pixel_count();
-                differing += case.explained(&picture, judge).differing;
+                differing += case.assert_explained(&name(what), &picture, judge).differing;
             }
         }
     }
@@ -386,23 +358,23 @@ fn more_digits_than_the_reference_has_are_explained() {
                BACK 0.7 0.8 0.2\nAMBIENT 0.2 0.2 0.2";
     for (name, scene) in scenes(3000).chain([("sun".to_owned(), scene_of(sun))]) {
         for settings in conventions() {
-            let case = Case::new(&scene, settings);
-            case.assert_explained(&name, &case.picture::<Dd>(), Judge::of(Tier::Double));
+            let case = Case::new(&scene, &settings);
+            case.assert_explained(&name, &picture::<Dd>(&case), Judge::of(Tier::Double));
         }
     }
 }
 
 /// The kinds of decisions that explain `picture`, and how many pixels nothing does.
 fn findings(scene: &Scene, picture: &Picture) -> (Vec<Decision>, u64) {
-    let explanation = Case::new(scene, Settings::classic()).explained(picture, Judge::of(Tier::Fast));
+    let explanation = Case::new(scene, &Settings::classic()).explained(picture, Judge::of(Tier::Fast));
     (explanation.explained.into_keys().collect(), explanation.unexplained)
 }
 
 /// The picture of `scene` with pixel (19, 20) as it is in that of `other`.
 fn with_pixel_of(scene: &Scene, other: &Scene) -> Picture {
-    let mut rgb = Case::new(scene, Settings::classic()).expected.rgb().to_vec();
+    let mut rgb = Case::new(scene, &Settings::classic()).expected.rgb().to_vec();
     let pixel = (20 * scene.width as usize + 19) * 3;
-    rgb[pixel..pixel + 3].copy_from_slice(&Case::new(other, Settings::classic()).expected.rgb()[pixel..pixel + 3]);
+    rgb[pixel..pixel + 3].copy_from_slice(&Case::new(other, &Settings::classic()).expected.rgb()[pixel..pixel + 3]);
     Picture::new(scene.width, scene.height, rgb).unwrap()
 }
 
@@ -471,7 +443,7 @@ fn constants_have_no_margin() {
     for text in scenes {
         let scene = scene_of(text);
         for settings in conventions() {
-            let case = Case::new(&scene, settings);
+            let case = Case::new(&scene, &settings);
             for tier in Tier::ALL {
                 for (less, more) in [(1, 0), (0, 1)] {
                     let wrong = mapped(&case.expected, |level| level.saturating_sub(less).saturating_add(more));

@@ -6,7 +6,7 @@ use glam::DVec3;
 use trueray::cpu::{Reference, picked};
 use trueray::effects::Effects;
 use trueray::exact::ExactScene;
-use trueray::gpu::{Choice, Gpu, GpuRenderer, Kernel};
+use trueray::gpu::{Gpu, GpuRenderer, Kernel};
 use trueray::limits;
 use trueray::precision::{self, Selection, Tier};
 use trueray::scene::{Light, Scene, Sphere, Window};
@@ -16,7 +16,7 @@ use trueray::view::View;
 
 use trueray::accel::Rounding;
 
-use crate::support::{KEPT, cpu_picture, gpu, gpu_picture, scaled, scene, scene_files, scene_of};
+use crate::support::{cpu_picture, gpu, gpu_picture, scaled, scene, scene_files, scene_of};
 
 /// All tiers that the device has.
 fn kernels(gpu: &Gpu) -> Vec<Kernel> {
@@ -52,12 +52,6 @@ fn device(gpu: &Gpu, kernel: Kernel, scene: &Scene, settings: &Settings, roundin
     Some(rgb)
 }
 
-/// The one device, with kernels that are kept from picture to picture.
-fn keeping_gpu(test: &str) -> Option<Gpu> {
-    drop(gpu(test)?);
-    Some(Gpu::open(&Choice::Gpu).unwrap().keeping_kernels(KEPT))
-}
-
 /// How many pixels differ.
 fn differing(a: &[u8], b: &[u8]) -> usize {
     assert_eq!(a.len(), b.len());
@@ -68,7 +62,8 @@ fn differing(a: &[u8], b: &[u8]) -> usize {
 fn usual_scene(random: &mut Random) -> Scene {
     let mut scene = scene_of("AMBIENT 0.2 0.2 0.2\nBACK 0.1 0.2 0.3");
     (scene.width, scene.height) = (33, 25);
-    for index in 0..4 + random.bits() % 40 {
+    // Few numbers, since where all spheres are tested a kernel is for one.
+    for index in 0..[4, 13, 43][(random.bits() % 3) as usize] {
         scene.spheres.push(Sphere {
             center: random.in_box(4.0) + DVec3::new(0.0, 0.0, -7.0),
             scale: DVec3::from_array([(); 3].map(|()| random.within(0.3, 1.2))),
@@ -199,7 +194,7 @@ fn lists_hold_at_every_magnitude() {
 
 #[test]
 fn lists_hold_at_every_magnitude_and_tier() {
-    let Some(gpu) = keeping_gpu("lists_hold_at_every_magnitude_and_tier") else { return };
+    let Some(gpu) = gpu("lists_hold_at_every_magnitude_and_tier") else { return };
     for kernel in kernels(&gpu) {
         let mut rendered = 0;
         for seed in (1..768).step_by(11) {
@@ -229,7 +224,7 @@ fn lists_hold_at_every_magnitude_and_tier() {
 /// From far away a light shines from the same direction as from farther still.
 #[test]
 fn shadows_of_a_far_light_do_not_depend_on_its_distance() {
-    let shared = keeping_gpu("shadows_of_a_far_light_do_not_depend_on_its_distance");
+    let shared = gpu("shadows_of_a_far_light_do_not_depend_on_its_distance");
     let mut with_shadows = 0;
     for seed in 0..8 {
         let mut random = Random::new(15, seed);
@@ -313,15 +308,15 @@ fn no_picture_depends_on_its_units() {
 /// Spheres wholly beyond the image plane look the same through any window of the same shape.
 #[test]
 fn no_picture_depends_on_the_size_of_its_window() {
-    let shared = keeping_gpu("no_picture_depends_on_the_size_of_its_window");
+    let shared = gpu("no_picture_depends_on_the_size_of_its_window");
     let mut random = Random::new(16, 0);
     let mut scene = usual_scene(&mut random);
     scene.spheres.retain(|sphere| sphere.center.z < -3.0);
     for settings in [Settings::classic(), Settings::exact()] {
         let expected = cpu(&scene, &settings, Rounding::DOUBLE);
-        let kernels = shared.as_ref().map(kernels).unwrap_or_default();
+        let kernels = shared.as_deref().map(kernels).unwrap_or_default();
         let on_device = |kernel: Kernel, scene: &Scene| {
-            device(shared.as_ref().unwrap(), kernel, scene, &settings, kernel.rounding()).unwrap()
+            device(shared.as_deref().unwrap(), kernel, scene, &settings, kernel.rounding()).unwrap()
         };
         let pictures: Vec<_> = kernels.iter().map(|&kernel| on_device(kernel, &scene)).collect();
         for exponent in [-800, -300, -100, -66, -40, -20, -5, 1] {
@@ -362,7 +357,7 @@ fn inside_a_mirror(kr: f64) -> Scene {
 
 #[test]
 fn negative_mirrors_alternate_between_white_and_black() {
-    let shared = keeping_gpu("negative_mirrors_alternate_between_white_and_black");
+    let shared = gpu("negative_mirrors_alternate_between_white_and_black");
     for kr in [-2.0_f64, -6e5, -6e25] {
         let scene = inside_a_mirror(kr);
         for bounces in 0..10_i32 {
@@ -405,7 +400,7 @@ fn the_weight_of_a_ray_is_not_limited_where_that_would_be_seen() {
 /// What is too bright for `f32` takes `double`, and `fast` refuses it rather than show something else.
 #[test]
 fn colours_beyond_single_precision_take_double() {
-    let shared = keeping_gpu("colours_beyond_single_precision_take_double");
+    let shared = gpu("colours_beyond_single_precision_take_double");
     let mirrors = "SPHERE a -1 0 -5 1 1 1 1 1 1 0.5 0.5 0.5 -6e25 9\nSPHERE b 1 0 -5 1 1 1 1 1 1 0.5 0.5 0.5 -6e25 9\n\
                    SPHERE c 0 1.8 -6 1 1 1 1 0.5 0.2 0.5 0.5 0.5 0 9\nLIGHT l 3 3 3 1 1 1\nAMBIENT 1 1 1";
     let ball = "SPHERE a 0 0 -5 1 1 1 0.5 0.5 0.5 0.5 0.5 0.5 0 9\n";
@@ -444,7 +439,7 @@ fn colours_beyond_single_precision_take_double() {
 /// 0 to the power of 0 is 1, and to that of the least number 0: it stays a number at every tier.
 #[test]
 fn the_least_exponent_is_none_of_zero() {
-    let shared = keeping_gpu("the_least_exponent_is_none_of_zero");
+    let shared = gpu("the_least_exponent_is_none_of_zero");
     let text = |n: &str| {
         format!("SPHERE a 0 0 -5 1 1 1 1 1 1 0.2 0.2 0.6 0 {n}\nLIGHT l 4 4 0 1 1 1\nAMBIENT 0.2 0.2 0.2\nBACK 0 0 0")
     };

@@ -2,18 +2,14 @@
 //!
 //! `TRUERAY_MASKED=all` renders every scene of `scenes/` with every mask at every tier, where otherwise a few stand for them.
 
-use trueray::compare::Explanation;
-use trueray::cpu::Reference;
 use trueray::effects::Effects;
 use trueray::engine::Backend;
 use trueray::gpu::{Choice, Device, Error, Gpu, LEAST_BUFFERS, MAX_TABLES, Mask, Tables};
 use trueray::precision::Tier;
-use trueray::scene::Scene;
-use trueray::settings::Settings;
 use trueray::tuning::Tuning;
 
 use crate::golden::all_subjects;
-use crate::support::{KEPT, cpu_picture, gpu, gpu_picture, is_set, say};
+use crate::support::{Case, KEPT, gpu, gpu_picture, is_set, say};
 
 /// Those that between them need every table.
 const SOME: [&str; 7] = [
@@ -69,36 +65,27 @@ fn offers_little(gpu: &Gpu) -> bool {
     info.max_storage_buffers < MAX_TABLES + LEAST_BUFFERS || info.max_storage_textures < MAX_TABLES
 }
 
-fn assert_explained(who: &str, gpu: &Gpu, tier: Tier, scene: &Scene, settings: &Settings) {
-    let effects = Effects::of(&scene.viewed(settings));
-    let (picture, not_finite) = gpu_picture(gpu, tier, scene, settings, &effects);
-    assert_eq!(not_finite, 0, "{who}");
-    let (expected, _) = cpu_picture::<f64>(scene, settings, &effects);
-    let reference = Reference::new(&scene.viewed(settings), &effects);
-    let judge = Backend::Device(gpu, tier).judge();
-    let explanation = Explanation::of(&picture, &expected, &reference, &judge);
-    assert_eq!(explanation.unexplained, 0, "{who}\n{}", explanation.report());
-}
-
 #[test]
 fn every_scene_is_rendered_with_what_there_is() {
     let Some(usual) = gpu("every_scene_is_rendered_with_what_there_is") else { return };
     let (offers_little, has_f64) = (offers_little(&usual), usual.device.info.f64);
     drop(usual);
     let is_whole = is_set("TRUERAY_MASKED");
+    let subjects = all_subjects().filter(|(name, ..)| is_whole || SOME.contains(&name.as_str()));
+    let cases: Vec<_> = subjects.map(|(name, scene, settings)| (name, Case::new(&scene, &settings))).collect();
     let mut rendered = 0;
     for (name, mask, tables) in masks() {
         let gpu = masked(&mask);
         assert!(gpu.tables() == tables || offers_little, "{name}: {:?}", gpu.tables());
         let tiers: Vec<_> = Tier::ALL.into_iter().filter(|&tier| gpu.kernel(tier).is_ok()).collect();
         assert_eq!(gpu.device.info.f64, has_f64 && !mask.no_f64 && !mask.no_int64, "{name}");
-        for (scene_name, scene, settings) in all_subjects() {
-            if !is_whole && !SOME.contains(&scene_name.as_str()) {
-                continue;
-            }
+        for (scene_name, case) in &cases {
             let tiers = if is_whole { &tiers[..] } else { &tiers[..1] };
             for &tier in tiers {
-                assert_explained(&format!("{scene_name} at {tier}, {name}"), &gpu, tier, &scene, &settings);
+                let who = format!("{scene_name} at {tier}, {name}");
+                let (picture, not_finite) = gpu_picture(&gpu, tier, &case.scene, &case.settings, &case.effects);
+                assert_eq!(not_finite, 0, "{who}");
+                case.assert_explained(&who, &picture, Backend::Device(&gpu, tier).judge());
                 rendered += 1;
             }
         }

@@ -5,18 +5,16 @@
 //! reference in each scalar by its unclamped colour, the device at each tier by its level, which has to be that of a
 //! colour within the error of the tier.
 
-use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
-
 use glam::DVec3;
 use trueray::cpu::{Dd, Real, Reference};
 use trueray::effects::Effects;
-use trueray::gpu::{Choice, Gpu};
+use trueray::gpu::Gpu;
 use trueray::precision::Tier;
 use trueray::scene::{Scene, parse};
 use trueray::settings::{Quantize, SampleOffset, Secondary, Settings, Specular};
 use trueray::tuning::Tuning;
 
-use crate::support::{cpu_picture, gpu, gpu_picture};
+use crate::support::{cpu_picture, gpu, gpu_picture, pairs};
 
 /// What a sphere is made of.
 #[derive(Clone, Copy)]
@@ -175,17 +173,6 @@ fn scene(case: &Case, sampling: SampleOffset) -> Scene {
     parsed.scene.clone().unwrap_or_else(|| panic!("{}", parsed.report(false)))
 }
 
-/// The device as one without `f64`, whose `double` calculates in pairs of `f32`.
-fn pairs(is_there: bool) -> Option<MutexGuard<'static, Gpu>> {
-    static PAIRS: OnceLock<Option<Mutex<Gpu>>> = OnceLock::new();
-    let open = || {
-        let mut gpu = Gpu::open(&Choice::Gpu).ok().filter(|_| is_there)?;
-        gpu.device.info.f64 = false;
-        Some(Mutex::new(gpu))
-    };
-    PAIRS.get_or_init(open).as_ref().map(|gpu| gpu.lock().unwrap_or_else(PoisonError::into_inner))
-}
-
 /// The ways in which a device may follow mirrored rays.
 #[derive(Clone, Copy)]
 enum Ways {
@@ -215,7 +202,7 @@ const SINGLE: f64 = 2e-5;
 fn check(test: &str, cases: &[Case], ways: Ways) {
     let mut failures = Vec::new();
     let mut device = gpu(test);
-    let mut pairs = pairs(device.is_some());
+    let mut pairs = device.as_ref().and_then(|_| pairs());
     for case in cases {
         for (convention, settings) in &case.settings {
             let scene = scene(case, settings.sampling);

@@ -2,18 +2,16 @@
 
 use std::path::Path;
 
-use trueray::compare::{Difference, Explanation};
 use trueray::cpu::{Judge, Reference};
 use trueray::effects::{Effect, EffectSet, Effects, Request};
 use trueray::engine::{Backend, Engine, render_bands};
-use trueray::film::Picture;
 use trueray::gpu;
 use trueray::gpu::{Ahead, Choice, Gpu, GpuRenderer, Tables};
 use trueray::precision::{self, Demand, Selection, Tier};
 use trueray::settings::{Settings, Specular};
 use trueray::tuning::{Class, Tuning};
 
-use crate::support::{cpu_picture, gpu, gpu_picture, root, scene, scene_files, scene_of};
+use crate::support::{Case, cpu_picture, gpu, gpu_picture, root, scene, scene_files, scene_of};
 
 /// Scenes whose every pixel all tiers promise.
 const ORDINARY: [&str; 3] = ["basic", "effects", "refraction"];
@@ -24,67 +22,58 @@ fn conventions() -> [(&'static str, Settings); 3] {
 }
 
 /// Runs `check` for every ordinary scene in every convention.
-fn for_each_case(check: impl Fn(&str, &trueray::scene::Scene, &Settings)) {
+fn for_each_case(check: impl Fn(&str, &Case)) {
     for file in scene_files(&ORDINARY) {
-        let scene = scene(&file);
         for (name, settings) in conventions() {
-            check(&format!("{}, {name}", short(&file)), &scene, &settings);
+            check(&format!("{}, {name}", short(&file)), &Case::of(&file, &settings));
         }
     }
+}
+
+/// The case with all effects, called for or not.
+fn all_effects(case: &Case) -> Effects {
+    Effects::requested(&case.scene.viewed(&case.settings), &Request::Exactly(EffectSet::ALL))
 }
 
 fn short(file: &Path) -> String {
     file.file_stem().unwrap().to_string_lossy().into_owned()
 }
 
-fn assert_explained(case: &str, picture: &Picture, scene: &trueray::scene::Scene, settings: &Settings, judge: Judge) {
-    let effects = Effects::of(&scene.viewed(settings));
-    let (expected, not_finite) = cpu_picture::<f64>(scene, settings, &effects);
-    assert_eq!(not_finite, 0, "{case}: reference");
-    let reference = Reference::new(&scene.viewed(settings), &effects);
-    let explanation = Explanation::of(picture, &expected, &reference, &judge);
-    assert_eq!(explanation.unexplained, 0, "{case}:\n{}", explanation.report());
-}
-
 #[test]
 fn gpu_differs_from_the_reference_only_where_explained() {
     let Some(gpu) = gpu("gpu_differs_from_the_reference_only_where_explained") else { return };
-    for_each_case(|case, scene, settings| {
-        let (picture, not_finite) =
-            gpu_picture(&gpu, Tier::Fast, scene, settings, &Effects::of(&scene.viewed(settings)));
-        assert_eq!(not_finite, 0, "{case}");
-        assert_explained(case, &picture, scene, settings, Judge::of(Tier::Fast));
+    for_each_case(|name, case| {
+        let (picture, not_finite) = gpu_picture(&gpu, Tier::Fast, &case.scene, &case.settings, &case.effects);
+        assert_eq!(not_finite, 0, "{name}");
+        case.assert_explained(name, &picture, Judge::of(Tier::Fast));
     });
 }
 
 /// The same algorithm in the shader's precision without a driver: what it explains is no driver's doing.
 #[test]
 fn single_precision_differs_from_the_reference_only_where_explained() {
-    for_each_case(|case, scene, settings| {
-        let (picture, not_finite) = cpu_picture::<f32>(scene, settings, &Effects::of(&scene.viewed(settings)));
-        assert_eq!(not_finite, 0, "{case}");
-        assert_explained(case, &picture, scene, settings, Judge::of(Tier::Fast));
+    for_each_case(|name, case| {
+        let (picture, not_finite) = cpu_picture::<f32>(&case.scene, &case.settings, &case.effects);
+        assert_eq!(not_finite, 0, "{name}");
+        case.assert_explained(name, &picture, Judge::of(Tier::Fast));
     });
 }
 
 #[test]
 fn what_a_scene_does_not_call_for_changes_no_byte_on_the_gpu() {
     let Some(gpu) = gpu("what_a_scene_does_not_call_for_changes_no_byte_on_the_gpu") else { return };
-    for_each_case(|case, scene, settings| {
-        let all = Effects::requested(&scene.viewed(settings), &Request::Exactly(EffectSet::ALL));
-        let (specialised, _) = gpu_picture(&gpu, Tier::Fast, scene, settings, &Effects::of(&scene.viewed(settings)));
-        let (generic, _) = gpu_picture(&gpu, Tier::Fast, scene, settings, &all);
-        assert!(specialised == generic, "{case}: {}", Effects::of(&scene.viewed(settings)).set);
+    for_each_case(|name, case| {
+        let [specialised, generic] = [&case.effects, &all_effects(case)]
+            .map(|effects| gpu_picture(&gpu, Tier::Fast, &case.scene, &case.settings, effects).0);
+        assert!(specialised == generic, "{name}: {}", case.effects.set);
     });
 }
 
 #[test]
 fn what_a_scene_does_not_call_for_changes_no_byte_on_the_cpu() {
-    for_each_case(|case, scene, settings| {
-        let all = Effects::requested(&scene.viewed(settings), &Request::Exactly(EffectSet::ALL));
-        let (specialised, _) = cpu_picture::<f64>(scene, settings, &Effects::of(&scene.viewed(settings)));
-        let (generic, _) = cpu_picture::<f64>(scene, settings, &all);
-        assert!(specialised == generic, "{case}: {}", Effects::of(&scene.viewed(settings)).set);
+    for_each_case(|name, case| {
+        let (generic, _) = cpu_picture::<f64>(&case.scene, &case.settings, &all_effects(case));
+        assert!(case.expected == generic, "{name}: {}", case.effects.set);
     });
 }
 
@@ -167,16 +156,15 @@ fn robust_and_double_differ_from_the_reference_only_where_explained() {
     let test = "robust_and_double_differ_from_the_reference_only_where_explained";
     let Some(gpu) = gpu(test) else { return };
     for file in scene_files(&["basic", "effects", "refraction", "hard"]) {
-        let scene = scene(&file);
-        for (name, settings) in &conventions()[..2] {
-            let effects = Effects::of(&scene.viewed(settings));
-            let all = Effects::requested(&scene.viewed(settings), &Request::Exactly(EffectSet::ALL));
+        for (convention, settings) in &conventions()[..2] {
+            let case = Case::of(&file, settings);
             for tier in tiers(&gpu).filter(|&tier| tier > Tier::Fast) {
-                let case = format!("{}, {name}, {tier}", short(&file));
-                let (picture, not_finite) = gpu_picture(&gpu, tier, &scene, settings, &effects);
-                assert_eq!(not_finite, 0, "{case}");
-                assert_explained(&case, &picture, &scene, settings, Backend::Device(&gpu, tier).judge());
-                assert!(picture == gpu_picture(&gpu, tier, &scene, settings, &all).0, "{case}: {}", effects.set);
+                let name = format!("{}, {convention}, {tier}", short(&file));
+                let (picture, not_finite) = gpu_picture(&gpu, tier, &case.scene, settings, &case.effects);
+                assert_eq!(not_finite, 0, "{name}");
+                case.assert_explained(&name, &picture, Backend::Device(&gpu, tier).judge());
+                let generic = gpu_picture(&gpu, tier, &case.scene, settings, &all_effects(&case)).0;
+                assert!(picture == generic, "{name}: {}", case.effects.set);
             }
         }
     }
@@ -188,13 +176,12 @@ fn auto_picks_a_tier_that_covers_the_scene() {
     let Some(gpu) = gpu("auto_picks_a_tier_that_covers_the_scene") else { return };
     let settings = Settings::exact();
     for file in scene_files(&["hard"]) {
-        let scene = scene(&file);
-        let effects = Effects::of(&scene.viewed(&settings));
-        let selection = Selection::of(&scene.viewed(&settings), &effects, precision::Request(None), gpu.ladder());
-        if gpu.kernel(selection.tier).is_ok() {
-            let (picture, _) = gpu_picture(&gpu, selection.tier, &scene, &settings, &effects);
-            let judge = Backend::Device(&gpu, selection.tier).judge();
-            assert_explained(&short(&file), &picture, &scene, &settings, judge);
+        let case = Case::of(&file, &settings);
+        let (viewed, request) = (case.scene.viewed(&settings), precision::Request(None));
+        let tier = Selection::of(&viewed, &case.effects, request, gpu.ladder()).tier;
+        if gpu.kernel(tier).is_ok() {
+            let (picture, _) = gpu_picture(&gpu, tier, &case.scene, &settings, &case.effects);
+            case.assert_explained(&short(&file), &picture, Backend::Device(&gpu, tier).judge());
         }
     }
     let plain =
@@ -300,21 +287,14 @@ fn pictures_of_several_samples_differ_from_the_reference_only_where_explained() 
     for (side, base) in [(2, Settings::classic()), (3, Settings::exact())] {
         let settings = Settings { samples_per_side: side, ..base };
         for file in scene_files(&["effects"]) {
-            let scene = scene(&file);
-            let effects = Effects::of(&scene.viewed(&settings));
-            let (picture, not_finite) = gpu_picture(&gpu, Tier::Fast, &scene, &settings, &effects);
-            assert_eq!(not_finite, 0);
-            assert_explained(
-                &format!("{}, {side} × {side} samples", short(&file)),
-                &picture,
-                &scene,
-                &settings,
-                Judge::of(Tier::Fast),
-            );
+            let case = Case::new(&scene(&file), &settings);
+            let name = format!("{}, {side} × {side} samples", short(&file));
+            let (picture, not_finite) = gpu_picture(&gpu, Tier::Fast, &case.scene, &settings, &case.effects);
+            assert_eq!(not_finite, 0, "{name}");
+            case.assert_explained(&name, &picture, Judge::of(Tier::Fast));
             if side == 2 {
-                let all = Effects::requested(&scene.viewed(&settings), &Request::Exactly(EffectSet::ALL));
-                let (generic, _) = gpu_picture(&gpu, Tier::Fast, &scene, &settings, &all);
-                assert!(picture == generic, "{}: {}", short(&file), effects.set);
+                let (generic, _) = gpu_picture(&gpu, Tier::Fast, &case.scene, &settings, &all_effects(&case));
+                assert!(picture == generic, "{name}: {}", case.effects.set);
             }
         }
     }
@@ -335,17 +315,15 @@ fn large_mirrors_show_no_acne() {
         ));
         (scene.width, scene.height) = (320, 240);
         let settings = Settings::classic();
-        let effects = Effects::of(&scene.viewed(&settings));
-        let (expected, _) = cpu_picture::<f64>(&scene, &settings, &effects);
+        let case = Case::new(&scene, &settings);
+        let demand = Demand::of(&scene.viewed(&settings), &case.effects);
         for tier in tiers(&gpu) {
-            let case = format!("radius {radius}, {tier}");
-            let (picture, _) = gpu_picture(&gpu, tier, &scene, &settings, &effects);
+            let name = format!("radius {radius}, {tier}");
+            let (picture, _) = gpu_picture(&gpu, tier, &scene, &settings, &case.effects);
             // A pixel of acne is none that lies next to a silhouette or a shadow.
-            assert_explained(&case, &picture, &scene, &settings, Backend::Device(&gpu, tier).judge());
-            let demand = Demand::of(&scene.viewed(&settings), &effects);
-            let differing = Difference::between(&picture, &expected).unwrap().differing.over_0;
-            assert!(tier < Tier::Double || demand.beyond(tier, &scene).is_none(), "{case}");
-            assert!(demand.beyond(tier, &scene).is_some() || differing <= 7, "{case}: {differing} of 76,800");
+            let differing = case.assert_explained(&name, &picture, Backend::Device(&gpu, tier).judge()).differing;
+            assert!(tier < Tier::Double || demand.beyond(tier, &scene).is_none(), "{name}");
+            assert!(demand.beyond(tier, &scene).is_some() || differing <= 7, "{name}: {differing} of 76,800");
         }
     }
 }

@@ -8,12 +8,11 @@ use trueray::cpu::{Dd, Judge, Reference};
 use trueray::effects::{Effects, Request};
 use trueray::engine::Backend;
 use trueray::film::Picture;
-use trueray::gpu::{Choice, Gpu};
 use trueray::precision::Tier;
 use trueray::scene::Scene;
 use trueray::settings::Settings;
 
-use crate::support::{cpu_picture, gpu, gpu_picture, root, say_skipped, scene, scene_files, scene_of};
+use crate::support::{Case, cpu_picture, gpu, gpu_picture, pairs, root, say_skipped, scene, scene_files, scene_of};
 
 fn ball(eta: f64) -> GlassBody {
     GlassBody { center: DVec3::ZERO, scale: DVec3::ONE, eta }
@@ -273,21 +272,16 @@ fn pairs_differ_from_the_reference_only_where_explained() {
     if gpu("pairs_differ_from_the_reference_only_where_explained").is_none() {
         return;
     }
-    let mut gpu = Gpu::open(&Choice::Gpu).unwrap();
-    gpu.device.info.f64 = false;
+    let gpu = pairs().unwrap();
     if gpu.kernel(Tier::Double).is_err() {
         return say_skipped("pairs_differ_from_the_reference_only_where_explained", "no error-free transforms");
     }
     for file in scene_files(&["refraction"]) {
-        let scene = scene(&file);
         for settings in conventions() {
-            let effects = Effects::of(&scene.viewed(&settings));
-            let (picture, not_finite) = gpu_picture(&gpu, Tier::Double, &scene, &settings, &effects);
-            let (expected, _) = cpu_picture::<f64>(&scene, &settings, &effects);
-            let reference = Reference::new(&scene.viewed(&settings), &effects);
-            let judge = Backend::Device(&gpu, Tier::Double).judge();
-            let explanation = Explanation::of(&picture, &expected, &reference, &judge);
-            assert_eq!((not_finite, explanation.unexplained), (0, 0), "{}:\n{}", file.display(), explanation.report());
+            let (case, name) = (Case::of(&file, &settings), file.display().to_string());
+            let (picture, not_finite) = gpu_picture(&gpu, Tier::Double, &case.scene, &settings, &case.effects);
+            assert_eq!(not_finite, 0, "{name}");
+            case.assert_explained(&name, &picture, Backend::Device(&gpu, Tier::Double).judge());
         }
     }
 }

@@ -1,11 +1,13 @@
 //! What several test modules share.
 
+use std::collections::BTreeMap;
 use std::io::Write as _;
 use std::num::NonZero;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
-use trueray::cpu::{Real, Reference};
+use trueray::compare::Explanation;
+use trueray::cpu::{Judge, Real, Reference};
 use trueray::effects::Effects;
 use trueray::engine::{Backend, Engine, render_picture};
 use trueray::film::Picture;
@@ -32,6 +34,17 @@ pub(crate) fn gpu(test: &str) -> Option<MutexGuard<'static, Gpu>> {
     }
 }
 
+/// The device as one without `f64`, whose `double` calculates in pairs of `f32`; where a test has the device.
+pub(crate) fn pairs() -> Option<MutexGuard<'static, Gpu>> {
+    static PAIRS: OnceLock<Option<Mutex<Gpu>>> = OnceLock::new();
+    let open = || {
+        let mut gpu = Gpu::open(&Choice::Gpu).ok()?.keeping_kernels(KEPT);
+        gpu.device.info.f64 = false;
+        Some(Mutex::new(gpu))
+    };
+    PAIRS.get_or_init(open).as_ref().map(|gpu| gpu.lock().unwrap_or_else(PoisonError::into_inner))
+}
+
 /// Says that a test is skipped.
 pub(crate) fn say_skipped(test: &str, why: &str) {
     say(test, &format!("skipped: {why}"));
@@ -46,6 +59,13 @@ pub(crate) fn say(test: &str, what: &str) {
 /// Whether an environment variable is set to something but 0.
 pub(crate) fn is_set(variable: &str) -> bool {
     std::env::var(variable).is_ok_and(|value| !value.is_empty() && value != "0")
+}
+
+/// Where Mesa keeps machine code, for a program whose own caches are to lie elsewhere: as its `MESA_SHADER_CACHE_DIR`.
+pub(crate) fn driver_cache() -> PathBuf {
+    let set = |variable| std::env::var_os(variable).filter(|value| !value.is_empty()).map(PathBuf::from);
+    let in_home = || set("HOME").map_or_else(std::env::temp_dir, |home| home.join(".cache"));
+    set("MESA_SHADER_CACHE_DIR").or_else(|| set("XDG_CACHE_HOME")).unwrap_or_else(in_home)
 }
 
 /// The project's folder.
@@ -111,6 +131,46 @@ pub(crate) fn cpu_picture<T: Real>(scene: &Scene, settings: &Settings, effects: 
     let mut rgb = vec![0; scene.width as usize * scene.height as usize * 3];
     let tally = Reference::<T>::new(&scene.viewed(settings), effects).rows(0, &mut rgb).unwrap();
     (picture(scene, rgb), tally.not_finite)
+}
+
+/// A scene with its reference and the reference's picture.
+pub(crate) struct Case {
+    pub(crate) scene: Scene,
+    pub(crate) settings: Settings,
+    pub(crate) effects: Effects,
+    pub(crate) reference: Reference<f64>,
+    pub(crate) expected: Picture,
+}
+
+impl Case {
+    pub(crate) fn new(scene: &Scene, settings: &Settings) -> Self {
+        let effects = Effects::of(&scene.viewed(settings));
+        let reference = Reference::new(&scene.viewed(settings), &effects);
+        let mut rgb = vec![0; scene.width as usize * scene.height as usize * 3];
+        assert_eq!(reference.rows(0, &mut rgb).unwrap().not_finite, 0);
+        let expected = picture(scene, rgb);
+        Self { scene: scene.clone(), settings: *settings, effects, reference, expected }
+    }
+
+    /// Of a scene's file, made once for all tests.
+    pub(crate) fn of(file: &Path, settings: &Settings) -> Arc<Self> {
+        static CASES: Mutex<BTreeMap<String, Arc<OnceLock<Arc<Case>>>>> = Mutex::new(BTreeMap::new());
+        let key = format!("{} {settings:?}", file.display());
+        let case = Arc::clone(CASES.lock().unwrap().entry(key).or_default());
+        Arc::clone(case.get_or_init(|| Arc::new(Self::new(&scene(file), settings))))
+    }
+
+    pub(crate) fn explained(&self, picture: &Picture, judge: Judge) -> Explanation {
+        Explanation::of(picture, &self.expected, &self.reference, &judge)
+    }
+
+    /// Fails where a pixel of `picture` is unexplained.
+    #[track_caller]
+    pub(crate) fn assert_explained(&self, what: &str, picture: &Picture, judge: Judge) -> Explanation {
+        let explanation = self.explained(picture, judge);
+        assert_eq!(explanation.unexplained, 0, "{what}:\n{}", explanation.report());
+        explanation
+    }
 }
 
 fn picture(scene: &Scene, rgb: Vec<u8>) -> Picture {

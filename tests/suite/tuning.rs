@@ -11,7 +11,7 @@ use trueray::scene::Scene;
 use trueray::settings::Settings;
 use trueray::tuning::{Class, KNOBS, Tuning};
 
-use crate::support::{gpu, scene, scene_files};
+use crate::support::{driver_cache, gpu, scene, scene_files};
 
 /// Each number at its least, and at its greatest; and some in between.
 fn tunings() -> [Tuning; 5] {
@@ -128,7 +128,7 @@ fn classes_follow_from_the_type() {
 fn run(cache: &Path, ignore: bool, arguments: &str) -> (String, String, Option<i32>) {
     let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_trueray"));
     command.args(arguments.split_whitespace()).current_dir(cache).env("XDG_CACHE_HOME", cache);
-    command.env("MESA_SHADER_CACHE_DIR", cache).env_remove("TRUERAY_NO_TUNING");
+    command.env("MESA_SHADER_CACHE_DIR", driver_cache()).env_remove("TRUERAY_NO_TUNING");
     if ignore {
         command.env("TRUERAY_NO_TUNING", "1");
     }
