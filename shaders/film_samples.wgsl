@@ -1,20 +1,30 @@
 // Several samples a pixel: their results are colours, of which the pixel is the mean.
 // needs: counters, effects, real, see, slots
-// host: STATUS_CUT, STATUS_TANGENT
+// host: STATUS_CUT, STATUS_UNSURE
 
 // With the status, as a number.
 @group(0) @binding(7) var<storage, read_write> colors: array<vec4r>;
 
 // What the primary ray says of itself, for whoever finishes its path.
 fn keep_status(slot: u32) {
-    if TANGENTS {
-        colors[slot].w = select(real(0.0), real(STATUS_TANGENT), is_tangent);
+    if TANGENTS | CERTIFIED {
+        colors[slot].w = select(real(0.0), real(STATUS_UNSURE), is_unsure);
+    }
+}
+
+// Likewise a ray that goes on in another invocation.
+fn add_status(slot: u32) {
+    if CERTIFIED {
+        colors[slot].w = select(colors[slot].w, real(STATUS_UNSURE), is_unsure);
     }
 }
 
 fn finish(slot: u32, color: vec3r) {
     var status = real(dispatch_bits()) + select(real(0.0), real(STATUS_CUT), is_cut);
-    if TANGENTS {
+    if TANGENTS | CERTIFIED {
+        if CERTIFIED {
+            add_status(slot);
+        }
         status += colors[slot].w;
     }
     colors[slot] = vec4r(color, status);

@@ -28,7 +28,7 @@ fn nearest_seen(ray: Ray, pixel: vec2<u32>) -> Hit {
             let body = body_of(sphere);
             nearest = nearer_root(nearest, other_root(ray, body, range), sphere);
             if TANGENTS {
-                is_tangent |= may_touch(ray, body);
+                is_unsure |= may_touch(ray, body);
             }
             at++;
             if at == list.y {

@@ -10,6 +10,7 @@
 const HIT_FOUND: u32 = 1u << 31u;
 const HIT_INSIDE: u32 = 1u << 30u;
 const HIT_CUT: u32 = 1u << 29u;
+const HIT_UNSURE: u32 = 1u << 28u;
 
 // Turns between two looks whether a lane is free for its next path.
 const TURNS: u32 = 16u;
@@ -39,7 +40,11 @@ fn walk_paths(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation
         if is_over | !walk.goes_on {
             if current < end {
                 let bits = select(0u, HIT_FOUND, nearest.found) | select(0u, HIT_INSIDE, nearest.inside);
-                let word = nearest.sphere | bits | select(0u, HIT_CUT, walk.goes_on);
+                var word = nearest.sphere | bits | select(0u, HIT_CUT, walk.goes_on);
+                if CERTIFIED {
+                    word |= select(0u, HIT_UNSURE, is_unsure);
+                    is_unsure = false;
+                }
                 keep_hit(current, word);
             }
             let path = path_of(min(next, end - 1u));
@@ -78,6 +83,9 @@ fn shade_paths(@builtin(global_invocation_id) id: vec3<u32>) {
     let path = path_of(index);
     let word = hit_at(index);
     is_cut |= (word & HIT_CUT) != 0u;
+    if CERTIFIED {
+        is_unsure |= (word & HIT_UNSURE) != 0u;
+    }
     let hit = Hit(is_path & ((word & HIT_FOUND) != 0u), distance_of(FAR), word & 0xffffffu, (word & HIT_INSIDE) != 0u);
     shade(path.ray, hit, is_path, path.slot, path.color, path.throughput);
 }

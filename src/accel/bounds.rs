@@ -24,6 +24,15 @@ impl Rounding {
     pub const UNKNOWN: Self = Self { tests: 1e9, lookups: 6e-8 };
     /// `f64` throughout.
     pub const DOUBLE: Self = Self { tests: 1.2e-16, lookups: 1.2e-16 };
+
+    /// How much more the lists of certified pictures allow for. They have whatever may be a hit by the bound of error, which counts
+    /// with a division and a square root of 2.5 units in the last place.
+    const CERTIFIED: f64 = 4.0;
+
+    /// The same, of a certified picture.
+    pub fn certified(self) -> Self {
+        Self { tests: Self::CERTIFIED * self.tests, lookups: Self::CERTIFIED * self.lookups }
+    }
 }
 
 /// What is added to each radius, as a part of it. A ray that starts outside the larger sphere has roots good to a tenth of

@@ -198,7 +198,7 @@ fn render_one(
         err!("{}{}{sampling}", explanation(&loaded.name, &effects), precision_explanation(&selection));
         explain_device(gpu);
     }
-    let backend = Backend::of(gpu, selection.tier);
+    let backend = Backend::of(gpu, &selection);
 
     let wants_stats = args.stats || args.stats_json.is_some();
     let options = Options { count_rays: wants_stats && !args.no_ray_counts, ..Options::default() };
@@ -242,6 +242,10 @@ fn render_one(
         Renderer::Whole(engine) => (engine.rays(), engine.times(), engine.verification(), engine.cut()),
         Renderer::InPart(engine, _) => (engine.rays(), engine.times(), engine.verification(), engine.cut()),
     };
+    let stages = match &renderer {
+        Renderer::Whole(engine) => engine.stages(),
+        Renderer::InPart(engine, _) => engine.stages(),
+    };
     let finishing = Instant::now();
     writer.finish()?;
     progress.finish();
@@ -265,6 +269,7 @@ fn render_one(
         tuning: gpu.map(|gpu| gpu.tuned().summary()),
         settings: *settings,
         effects,
+        certified: stages.filter(|_| selection.certified),
         precision: gpu.map(|_| selection),
         sampled,
         rays: rays.filter(|_| !args.no_ray_counts),
@@ -357,8 +362,8 @@ pub(super) fn explanation(name: &str, effects: &Effects) -> String {
 
 /// What the scene demands and which tier that takes.
 pub(super) fn precision_explanation(selection: &Selection) -> String {
-    let Selection { tier, reason, demand, .. } = selection;
-    format!("  precision    {tier}: {reason}\n  demand       {}\n", demand.summary())
+    let Selection { reason, demand, .. } = selection;
+    format!("  precision    {selection}: {reason}\n  demand       {}\n", demand.summary())
 }
 
 fn write_stats(path: &Path, stats: &[Stats]) -> Result<(), Failure> {

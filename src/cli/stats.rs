@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use crate::effects::Effects;
-use crate::engine::{Rays, Times};
+use crate::engine::{Rays, Stages, Times};
 use crate::precision::Selection;
 use crate::sampling::{Density, Fill};
 use crate::settings::Settings;
@@ -51,6 +51,9 @@ pub(super) struct Stats {
     /// Absent where every pixel is sampled.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sampled: Option<Sampled>,
+    /// How many pixels of a certified picture are right by which stage; absent where it is not certified.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certified: Option<Stages>,
     pub rays: Option<Rays>,
     pub not_finite_pixels: u64,
     /// Absent where nothing was.
@@ -90,8 +93,14 @@ impl Stats {
             row("tuning", tuning.clone());
         }
         row("effects", format!("{} (depth {})", self.effects.set, self.effects.depth));
-        if let Some(Selection { tier, reason, .. }) = &self.precision {
-            row("precision", format!("{tier}: {reason}"));
+        if let Some(selection) = &self.precision {
+            row("precision", format!("{selection}: {}", selection.reason));
+        }
+        if let Some(Stages { kernel, double, reference, more_bits }) = &self.certified {
+            let first = self.precision.as_ref().map_or("the kernel".into(), |selection| selection.tier.to_string());
+            let more = if *more_bits > 0 { format!(", {more_bits} of them with more bits") } else { String::new() };
+            let double = if first == "double" { String::new() } else { format!("{double} by double, ") };
+            row("certified", format!("{kernel} pixels by {first}, {double}{reference} by the CPU reference{more}"));
         }
         if let Some(Sampled { fill, pixels, .. }) = &self.sampled {
             let all = u64::from(self.width) * u64::from(self.height);

@@ -61,6 +61,7 @@ pub(super) fn run(args: &Args) -> u8 {
 }
 
 fn study(args: &Args) -> Result<(), Failure> {
+    args.device.check_tier()?;
     args.reports.check(&mut Guard::new(&args.scenes))?;
     let settings = args.picture.settings()?;
     let gpu = args.device.open()?;

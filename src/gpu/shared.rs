@@ -30,11 +30,11 @@ pub(super) const WORKGROUP_WORDS: u32 = 6;
 pub(super) const ONE_PATH: u32 = 0;
 pub(super) const SEVERAL_PATHS: u32 = 3;
 
-/// The bits of a pixel's status byte: it is not finite; a loop has ended before its time; rounding could decide whether the primary
-/// ray touches a sphere. Those above are the number of the dispatch: whatever a dispatch has not written shows another one.
+/// The bits of a pixel's status byte: it is not finite; a loop has ended before its time; rounding could decide what it shows. Those
+/// above are the number of the dispatch: whatever a dispatch has not written shows another one.
 pub(super) const STATUS_NOT_FINITE: u8 = 1;
 pub(super) const STATUS_CUT: u8 = 2;
-pub(super) const STATUS_TANGENT: u8 = 4;
+pub(super) const STATUS_UNSURE: u8 = 4;
 /// All of them.
 pub(super) const STATUS_FLAGS: u8 = 7;
 
@@ -61,7 +61,7 @@ pub(super) fn declaration(name: &str, scalar: Scalar) -> Option<String> {
         "SEVERAL_PATHS" => whole(SEVERAL_PATHS),
         "STATUS_NOT_FINITE" => whole(STATUS_NOT_FINITE.into()),
         "STATUS_CUT" => whole(STATUS_CUT.into()),
-        "STATUS_TANGENT" => whole(STATUS_TANGENT.into()),
+        "STATUS_UNSURE" => whole(STATUS_UNSURE.into()),
         "STATUS_FLAGS" => whole(STATUS_FLAGS.into()),
         "PROBE_FOUND" => whole(PROBE_FOUND),
         "PROBE_INSIDE" => whole(PROBE_INSIDE),

@@ -63,7 +63,7 @@ impl<'a> Case<'a> {
     /// What `auto` takes on software devices.
     fn tier(&self) -> Tier {
         let ladder = [Tier::Fast, Tier::Double, Tier::Robust];
-        Selection::of(&self.scene.viewed(&self.settings), &self.effects, precision::Request(None), &ladder).tier
+        Selection::of(&self.scene.viewed(&self.settings), &self.effects, precision::Request::Auto, &ladder).tier
     }
 
     /// The unclamped colours of the reference in `T`, by the margins of `f32`.

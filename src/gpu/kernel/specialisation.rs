@@ -39,6 +39,8 @@ pub struct Specialisation {
     pub samples: u32,
     /// Which pixels a dispatch renders.
     pub slots: Slots,
+    /// Whether pixels say where rounding could decide what they show.
+    pub certified: bool,
     /// Whether each pixel also says how many rays it took.
     pub count_rays: bool,
     /// Invocations of a workgroup of the kernels that are not over tiles.
@@ -65,6 +67,7 @@ impl Specialisation {
             walk: Walk::InPlace,
             samples: settings.samples_per_side,
             slots: Slots::Tiles,
+            certified: false,
             count_rays: false,
             workgroup: tuning.workgroup,
             dispatch_tiles: dispatch_tiles(UNIFORM),
@@ -123,6 +126,7 @@ impl Specialisation {
             ("SAMPLES", f64::from(self.samples)),
             ("COUNT_RAYS", f64::from(self.count_rays)),
             ("TANGENTS", f64::from(self.kernel.tells_tangents())),
+            ("CERTIFIED", f64::from(self.certified)),
             ("GROUP", f64::from(self.workgroup)),
         ];
         if self.keeps_paths() {

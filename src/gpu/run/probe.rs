@@ -304,6 +304,7 @@ impl<'a> Prober<'a> {
             places: Places::Large,
             sphere_count: 0,
             walk: Walk::InPlace,
+            certified: false,
             count_rays: false,
             workgroup: 64,
             samples: 1,

@@ -1,0 +1,131 @@
+//! Certified pictures: each pixel is what the reference has.
+//!
+//! The kernel of the picture says of which pixels it is unsure, by its bound of error. `double` renders these again, where they are
+//! many; the reference calculates what is left.
+
+use std::cell::OnceCell;
+use std::time::{Duration, Instant};
+
+use serde::Serialize;
+
+use crate::cpu::Reference;
+use crate::effects::Effects;
+use crate::gpu::{self, DeviceTimes, Gpu, GpuRenderer, Options, Pixels, Rendered};
+use crate::precision::Tier;
+use crate::scene::Scene;
+use crate::settings::Settings;
+use crate::viewed::ViewedScene;
+
+/// How many pixels of a certified picture are right by which stage.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct Stages {
+    /// By the first kernel, which was sure of them; also those where no sphere can be.
+    pub kernel: u64,
+    /// By `double`, of the others.
+    pub double: u64,
+    /// By the CPU reference, of the others.
+    pub reference: u64,
+    /// Those of them for which the reference took more bits than `f64` has.
+    pub more_bits: u64,
+}
+
+/// A scene whose pixels may have to be calculated again, with the reference for that, once there is one to do.
+#[derive(Debug)]
+pub(super) struct KeptScene {
+    scene: Scene,
+    settings: Settings,
+    effects: Effects,
+    reference: OnceCell<Reference<f64>>,
+}
+
+impl KeptScene {
+    pub(super) fn new(viewed: ViewedScene, effects: &Effects) -> Self {
+        let (scene, settings) = viewed.into_file();
+        Self { scene: scene.clone(), settings, effects: effects.clone(), reference: OnceCell::new() }
+    }
+
+    pub(super) fn reference(&self) -> &Reference<f64> {
+        self.reference.get_or_init(|| Reference::new(&self.scene.viewed(&self.settings), &self.effects))
+    }
+}
+
+/// Unsure pixels of a band from which on `double` renders them: compiling it takes as long as the reference takes for so many.
+const DOUBLE_FROM: usize = 1 << 14;
+
+/// Whether the kernel of a tier has a bound of its error for such a picture. Without `f64`, pairs of `f32` stand in for `double` up to
+/// the roots alone; and no bound is kept for the mean of several samples.
+pub(super) fn has_bound(gpu: &Gpu, tier: Tier, settings: &Settings) -> bool {
+    let kernel = match tier {
+        Tier::Fast => true,
+        Tier::Robust => false,
+        Tier::Double => gpu.device.info.f64,
+    };
+    kernel && settings.samples_per_side == 1
+}
+
+/// What a certified picture takes beside its first kernel.
+#[derive(Debug)]
+pub(super) struct Certifier<'a> {
+    /// The device, unless its first kernel has been `double`, or `double` has no bound there.
+    gpu: Option<&'a Gpu>,
+    /// `double`, once there are many unsure pixels.
+    double: Option<GpuRenderer<'a, Pixels>>,
+    /// What it took to prepare it.
+    pub(super) prepare: Duration,
+    pub(super) stages: Stages,
+}
+
+impl<'a> Certifier<'a> {
+    /// For a picture with these settings whose first kernel is that of `tier`.
+    pub(super) fn new(gpu: &'a Gpu, tier: Tier, settings: &Settings) -> Self {
+        let gpu = Some(gpu).filter(|gpu| tier != Tier::Double && has_bound(gpu, Tier::Double, settings));
+        Self { gpu, double: None, prepare: Duration::ZERO, stages: Stages::default() }
+    }
+
+    /// Times of `double`.
+    pub(super) fn times(&self) -> DeviceTimes {
+        self.double.as_ref().map(GpuRenderer::times).unwrap_or_default()
+    }
+
+    /// Renders `unsure` by `double`, if that is worth it, and has `place` put the colours of which it is sure to their places. What it
+    /// returns is left.
+    pub(super) fn render_again(
+        &mut self,
+        kept: &KeptScene,
+        unsure: Vec<[u32; 2]>,
+        mut place: impl FnMut([u32; 2], [u8; 3]),
+    ) -> Result<Rendered, gpu::Error> {
+        let is_worth_it = self.double.is_some() || unsure.len() >= DOUBLE_FROM;
+        let (true, Some(gpu)) = (is_worth_it, self.gpu) else {
+            return Ok(Rendered { unsure, ..Rendered::default() });
+        };
+        let double = match &mut self.double {
+            Some(double) => double,
+            none => match prepared(gpu, kept, &mut self.prepare) {
+                Ok(double) => none.insert(double),
+                // The device cannot hold the scene twice.
+                Err(error) if error.is_refusal() => {
+                    self.gpu = None;
+                    return Ok(Rendered { unsure, ..Rendered::default() });
+                }
+                Err(error) => return Err(error),
+            },
+        };
+        let mut colors = vec![[0; 3]; unsure.len()];
+        let rendered = double.pixels(&unsure, &mut colors)?;
+        // What is left gets its colour later.
+        unsure.iter().zip(colors).for_each(|(&pixel, color)| place(pixel, color));
+        self.stages.double += (unsure.len() - rendered.unsure.len() - rendered.cut.len()) as u64;
+        Ok(rendered)
+    }
+}
+
+/// `double` for pixels of `kept`; what that takes is added to `took`.
+fn prepared<'a>(gpu: &'a Gpu, kept: &KeptScene, took: &mut Duration) -> Result<GpuRenderer<'a, Pixels>, gpu::Error> {
+    let start = Instant::now();
+    let options = Options { certified: true, ..Options::default() };
+    let viewed = kept.scene.viewed(&kept.settings);
+    let double = GpuRenderer::with(gpu, &viewed, &kept.effects, Tier::Double, &options);
+    *took += start.elapsed();
+    double
+}
