@@ -1,6 +1,6 @@
 // One sample a pixel: its result is the pixel.
 // needs: counters, effects, quantize, real, see, slots
-// host: STATUS_CUT, STATUS_NOT_FINITE, STATUS_UNSURE
+// host: STATUS_CUT, STATUS_UNSURE
 
 // Red, green, blue in the low bytes, status in the high one.
 @group(0) @binding(7) var<storage, read_write> pixels: array<u32>;
@@ -24,13 +24,12 @@ fn finish(slot: u32, color: vec3r) {
     if TANGENTS | CERTIFIED {
         status |= pixels[slot] & (STATUS_UNSURE << 24u);
     }
-    let pixel = packed_pixel(color);
     if CERTIFIED {
         // What is not finite here may be so with a greater range.
-        let is_finite = (pixel & (STATUS_NOT_FINITE << 24u)) == 0u;
-        status |= select(STATUS_UNSURE << 24u, 0u, is_finite & !is_unsure);
+        let is_sure = !is_unsure & is_finite(color.x) & is_finite(color.y) & is_finite(color.z);
+        status |= select(STATUS_UNSURE << 24u, 0u, is_sure);
     }
-    pixels[slot] = pixel | status;
+    pixels[slot] = packed_pixel(color) | status;
 }
 
 fn see_pixel(pixel: vec2<u32>, slot: u32) {

@@ -122,7 +122,11 @@ pub struct CpuEngine {
 
 impl CpuEngine {
     /// Notes what an action on so many pixels took and came to; returns how many are not finite.
-    fn timed(&mut self, pixels: usize, action: impl FnOnce(&Reference<f64>) -> Result<Tally, Misuse>) -> Result<u64, Misuse> {
+    fn timed(
+        &mut self,
+        pixels: usize,
+        action: impl FnOnce(&Reference<f64>) -> Result<Tally, Misuse>,
+    ) -> Result<u64, Misuse> {
         let start = Instant::now();
         let tally = action(&self.reference)?;
         self.render += start.elapsed();
@@ -253,19 +257,34 @@ impl<'a, O: Output> Engine<'a, O> {
         };
         let certified = matches!(backend, Backend::Certified(..));
         let options = &Options { certified, ..*options };
-        let (renderer, verifier) = if verify == Verify::Nothing {
+        let (renderer, mut lists) = if verify == Verify::Nothing && !certified {
             (GpuRenderer::with(gpu, &viewed, effects, tier, options)?, None)
         } else {
-            let (renderer, accel) = GpuRenderer::with_lists(gpu, &viewed, effects, tier, options)?;
-            // Of a certified picture rounding explains nothing.
-            let judge = (!certified).then(|| backend.judge());
-            (renderer, Verifier::new(&viewed, effects, accel, judge, verify))
+            let (renderer, lists) = GpuRenderer::with_lists(gpu, &viewed, effects, tier, options)?;
+            (renderer, Some(lists))
+        };
+        // Of a certified picture rounding explains nothing.
+        let judge = (!certified).then(|| backend.judge());
+        let verifier = match verify {
+            Verify::Nothing => None,
+            verify => lists.take().and_then(|lists| Verifier::new(&viewed, effects, lists, judge, verify)),
         };
         let certifier = certified.then(|| Certifier::new(gpu, tier, viewed.settings()));
         let keeps = certified || renderer.tells_tangents() && verifier.is_none();
-        let kept = keeps.then(|| KeptScene::new(viewed, effects));
+        let kept = keeps.then(|| KeptScene::new(viewed, effects, lists));
         let (prepare, decided) = (start.elapsed(), Duration::ZERO);
         Ok(Self::Gpu(Box::new(DeviceEngine { renderer, prepare, verifier, kept, certifier, decided, cut: 0 })))
+    }
+
+    /// The same where `double` renders the unsure pixels of a certified picture as soon as a band has so many: this changes no byte.
+    #[must_use]
+    pub fn with_double_from(mut self, pixels: usize) -> Self {
+        if let Self::Gpu(gpu) = &mut self
+            && let Some(certifier) = &mut gpu.certifier
+        {
+            certifier.double_from = pixels;
+        }
+        self
     }
 
     /// Width and height of the picture.

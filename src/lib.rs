@@ -53,6 +53,8 @@ mod cache;
 #[doc(hidden)]
 pub mod camera;
 #[doc(hidden)]
+pub mod certificate;
+#[doc(hidden)]
 pub mod cli;
 #[doc(hidden)]
 pub mod compare;

@@ -323,7 +323,7 @@ fn two_pictures(args: &Args, a: &Path, b: &Path) -> Result<Pair, Failure> {
 }
 
 /// A picture file, or standard input for `-`, and its name.
-fn open(path: &Path) -> Result<(String, Encoded), Failure> {
+pub(super) fn open(path: &Path) -> Result<(String, Encoded), Failure> {
     if path == Path::new("-") {
         let name = "standard input";
         return Ok((name.into(), Encoded::from_stream(name, std::io::stdin().lock())?));

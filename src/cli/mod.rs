@@ -26,6 +26,7 @@ mod stats;
 mod stress;
 mod study;
 mod tune;
+mod verify;
 mod version;
 #[cfg(feature = "view")]
 mod view;
@@ -71,6 +72,9 @@ enum Command {
     /// Say where and how two pictures differ, or a picture and its scene's reference
     #[command(after_help = after_help::COMPARE)]
     Compare(compare::Args),
+    /// Say whether a picture is the one of its scene in every pixel, and its certificate is of it
+    #[command(after_help = after_help::VERIFY)]
+    Verify(verify::Args),
     /// Check scene files and summarise them, without rendering
     #[command(after_help = after_help::CHECK)]
     Check(check::Args),
@@ -116,8 +120,12 @@ pub fn run() -> ExitCode {
     if let Err(error) = signals::watch() {
         output::errln!("trueray: signals are not watched, an interrupt may leave temporary files: {error}");
     }
-    // compare has one code for every trouble.
-    let lost = if matches!(cli.command, Some(Command::Compare(_))) { failure::USAGE } else { failure::DEVICE_LOST };
+    // These have one code for every trouble.
+    let lost = if matches!(cli.command, Some(Command::Compare(_) | Command::Verify(_))) {
+        failure::USAGE
+    } else {
+        failure::DEVICE_LOST
+    };
     if let Err(failure) = watchdog::watch(lost) {
         return failure.report().into();
     }
@@ -128,6 +136,7 @@ pub fn run() -> ExitCode {
         },
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Compare(args)) => compare::run(&args),
+        Some(Command::Verify(args)) => verify::run(&args),
         Some(Command::Check(args)) => check::run(&args),
         Some(Command::Study(args)) => study::run(&args),
         Some(Command::Stress(args)) => stress::run(&args),

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use super::failure::{Failure, OK, USAGE};
-use super::files::{check_folder, json, save};
+use super::files::{check_folder, json, save, save_json};
 use super::guard::Guard;
 use super::input::{Loaded, print_doubts};
 use super::named::{check_named, format_by_ending};
@@ -13,11 +13,12 @@ use super::output::{err, errln};
 use super::progress::{Progress, Style};
 use super::sampling::{Choice, SamplingOptions};
 use super::stats::{Sampled, Stats, Verified, peak_memory_mib};
+use crate::certificate::{Certificate, PictureHasher, SceneHash, Subject};
 use crate::effects::Effects;
 use crate::engine::{Backend, Engine, Options, Pixels, device_name, ms, render_bands, render_partial};
 use crate::film::{Format, PictureWriter, Target};
 use crate::gpu::{Ahead, DeviceKind, Gpu};
-use crate::precision::Selection;
+use crate::precision::{Request, Selection};
 use crate::sampling::Samples;
 use crate::scene::Scene;
 use crate::settings::Settings;
@@ -59,6 +60,10 @@ pub(super) struct Args {
     /// Write the same as JSON; `-` is standard error
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     stats_json: Option<PathBuf>,
+    /// Write what certifies the picture: hashes of the scene and of the picture, settings, device, and how many pixels are right by
+    /// which stage; with --precision certified, or of the CPU reference. `trueray verify` reads it
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    certificate: Option<PathBuf>,
     /// Leave the rays out of the statistics: counting them takes time of its own
     #[arg(long, help_heading = "Output")]
     no_ray_counts: bool,
@@ -92,8 +97,10 @@ fn render_all(args: &Args) -> Result<u8, Failure> {
     if args.scenes.len() > 1 && args.output.as_deref().is_some_and(|output| !output.is_dir()) {
         return Err(Failure::new(USAGE, "several scenes need a folder for -o, or none"));
     }
+    check_certificate(args)?;
     let settings = args.picture.settings()?;
     let mut guard = Guard::new(&args.scenes);
+    guard.options([("--certificate", &args.certificate)])?;
     if let Some(path) = args.stats_json.as_deref().filter(|path| *path != Path::new("-")) {
         check_folder(path)?;
         guard.output("--stats-json", path)?;
@@ -156,6 +163,22 @@ fn render_all(args: &Args) -> Result<u8, Failure> {
     Ok(code)
 }
 
+/// Refuses a certificate of what is not certified.
+fn check_certificate(args: &Args) -> Result<(), Failure> {
+    let why = if args.certificate.is_none() {
+        return Ok(());
+    } else if args.scenes.len() > 1 {
+        "--certificate takes one scene"
+    } else if args.sampling.is_given() {
+        "--certificate is of whole pictures: pixels that are filled are not certified"
+    } else if args.device.uses_vulkan() && args.device.precision != Request::Certified {
+        "--certificate needs a certified picture\n  help: --precision certified"
+    } else {
+        return Ok(());
+    };
+    Err(Failure::new(USAGE, why))
+}
+
 impl Args {
     /// The first of the scene files.
     pub(super) fn first_scene(&self) -> Option<&Path> {
@@ -207,6 +230,7 @@ fn render_one(
         None => Renderer::Whole(Engine::verified(backend, viewed, &effects, &options, verify)?),
         Some(choice) => Renderer::InPart(Engine::verified(backend, viewed, &effects, &options, verify)?, choice),
     };
+    let scene_hash = args.certificate.as_ref().map(|_| SceneHash::of(scene));
     // The renderer has what it needs: the spheres go before paths and pixels take memory.
     let (width, height) = (scene.width, scene.height);
     let (spheres, lights) = (scene.spheres.len(), scene.lights.len());
@@ -217,6 +241,7 @@ fn render_one(
     let style = if args.quiet { Style::None } else { args.progress };
     let mut progress = Progress::of_rows(style, &loaded.name, height);
     let mut sampled = None;
+    let mut hasher = args.certificate.as_ref().map(|_| PictureHasher::new(width, height));
     let not_finite = match &mut renderer {
         Renderer::InPart(engine, Choice { density, fill }) => {
             let (density, fill) = (*density, *fill);
@@ -233,6 +258,9 @@ fn render_one(
             let start = Instant::now();
             writer.write_rows(band.rgb)?;
             write_time += start.elapsed();
+            if let Some(hasher) = &mut hasher {
+                hasher.add(band.rgb);
+            }
             let rows = band.rgb.len() / (width as usize * 3);
             progress.set((f64::from(band.first) + rows as f64) / f64::from(height));
             Ok::<_, Failure>(())
@@ -251,6 +279,11 @@ fn render_one(
     progress.finish();
     write_time += finishing.elapsed();
 
+    if let (Some(path), Some(scene), Some(hasher), Some(stages)) = (&args.certificate, scene_hash, hasher, stages) {
+        let subject = Subject::new(scene, settings, &effects, hasher.finish());
+        let kernel = Some(selection.tier).filter(|_| stages.kernel > 0);
+        save_json(path, &Certificate::new(subject, device_name(gpu), kernel, stages))?;
+    }
     if cut > 0 && !args.quiet {
         say_cut(&loaded.name, cut, &device_name(gpu));
     }

@@ -96,11 +96,8 @@ impl Stats {
         if let Some(selection) = &self.precision {
             row("precision", format!("{selection}: {}", selection.reason));
         }
-        if let Some(Stages { kernel, double, reference, more_bits }) = &self.certified {
-            let first = self.precision.as_ref().map_or("the kernel".into(), |selection| selection.tier.to_string());
-            let more = if *more_bits > 0 { format!(", {more_bits} of them with more bits") } else { String::new() };
-            let double = if first == "double" { String::new() } else { format!("{double} by double, ") };
-            row("certified", format!("{kernel} pixels by {first}, {double}{reference} by the CPU reference{more}"));
+        if let (Some(stages), Some(selection)) = (&self.certified, &self.precision) {
+            row("certified", stages.in_words(selection.tier));
         }
         if let Some(Sampled { fill, pixels, .. }) = &self.sampled {
             let all = u64::from(self.width) * u64::from(self.height);

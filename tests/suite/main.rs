@@ -9,6 +9,7 @@
 
 mod bench;
 mod camera;
+mod certified;
 mod claims;
 mod cli;
 mod compare;
