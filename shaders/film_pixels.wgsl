@@ -14,9 +14,7 @@ fn keep_status(slot: u32) {
 
 // Likewise a ray that goes on in another invocation.
 fn add_status(slot: u32) {
-    if CERTIFIED {
-        pixels[slot] |= select(0u, STATUS_UNSURE << 24u, is_unsure);
-    }
+    pixels[slot] |= select(0u, STATUS_UNSURE << 24u, is_unsure);
 }
 
 fn finish(slot: u32, color: vec3r) {

@@ -14,9 +14,7 @@ fn keep_status(slot: u32) {
 
 // Likewise a ray that goes on in another invocation.
 fn add_status(slot: u32) {
-    if CERTIFIED {
-        colors[slot].w = select(colors[slot].w, real(STATUS_UNSURE), is_unsure);
-    }
+    colors[slot].w = select(colors[slot].w, real(STATUS_UNSURE), is_unsure);
 }
 
 fn finish(slot: u32, color: vec3r) {

@@ -43,7 +43,9 @@ fn reflect(surface: Surface, color: vec3r, throughput: real, slot: u32) {
     if COUNT_RAYS {
         reflection_rays++;
     }
-    add_status(slot);
+    if CERTIFIED {
+        add_status(slot);
+    }
     let ray = reflection_ray(surface);
     let at = atomicAdd(&stage.next_path_count, 1u) * VECTORS;
     keep_path(at, vec4r(high_of(ray.origin), throughput));

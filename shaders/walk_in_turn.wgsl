@@ -40,12 +40,13 @@ fn walk_paths(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation
         if is_over | !walk.goes_on {
             if current < end {
                 let bits = select(0u, HIT_FOUND, nearest.found) | select(0u, HIT_INSIDE, nearest.inside);
-                var word = nearest.sphere | bits | select(0u, HIT_CUT, walk.goes_on);
+                let word = nearest.sphere | bits | select(0u, HIT_CUT, walk.goes_on);
                 if CERTIFIED {
-                    word |= select(0u, HIT_UNSURE, is_unsure);
+                    keep_hit(current, word | select(0u, HIT_UNSURE, is_unsure));
                     is_unsure = false;
+                } else {
+                    keep_hit(current, word);
                 }
-                keep_hit(current, word);
             }
             let path = path_of(min(next, end - 1u));
             ray = path.ray;

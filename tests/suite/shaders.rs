@@ -51,7 +51,7 @@ fn kinds() -> impl Iterator<Item = Variant> {
 /// What a pipeline of this variant may be specialised for.
 fn specialisation(variant: &Variant, effects: EffectSet, flags: usize) -> Specialisation {
     let Variant { kernel, storage, places, refraction, slots, walk, .. } = *variant;
-    let [shared_surfaces, blinn, count_rays] = [1, 2, 4].map(|bit| flags & bit != 0);
+    let [shared_surfaces, blinn, count_rays, certified] = [1, 2, 4, 8].map(|bit| flags & bit != 0);
     let samples = if variant.samples { 2 } else { 1 };
     Specialisation {
         kernel,
@@ -66,6 +66,7 @@ fn specialisation(variant: &Variant, effects: EffectSet, flags: usize) -> Specia
         walk,
         samples,
         slots,
+        certified,
         count_rays,
         workgroup: 64,
         dispatch_tiles: 8,
@@ -99,7 +100,7 @@ fn every_effect_set_is_valid() {
         for (index, effects) in EffectSet::every().enumerate() {
             let (variant, module) = &modules[usize::from(effects.has(Effect::Refraction))];
             // All flags with all effects, and some with each set.
-            let flags = if effects == EffectSet::ALL { 0..8 } else { index % 8..index % 8 + 1 };
+            let flags = if effects == EffectSet::ALL { 0..16 } else { index % 16..index % 16 + 1 };
             for flags in flags {
                 let constants = specialisation(variant, effects, flags).constants();
                 for entry_point in entry_points(variant) {
