@@ -2,6 +2,7 @@
 
 mod after_help;
 mod bench;
+mod certificate;
 mod check;
 mod color;
 mod compare;

@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use super::certificate::CertificateFile;
 use super::failure::{Failure, OK, USAGE};
-use super::files::{check_folder, json, save, save_json};
+use super::files::{check_folder, json, save};
 use super::guard::Guard;
 use super::input::{Loaded, print_doubts};
 use super::named::{check_named, format_by_ending};
@@ -13,9 +14,10 @@ use super::output::{err, errln};
 use super::progress::{Progress, Style};
 use super::sampling::{Choice, SamplingOptions};
 use super::stats::{Sampled, Stats, Verified, peak_memory_mib};
-use crate::certificate::{Certificate, PictureHasher, SceneHash, Subject};
 use crate::effects::Effects;
-use crate::engine::{Backend, Engine, Options, Pixels, device_name, ms, render_bands, render_partial};
+use crate::engine::{
+    Backend, Engine, Options, Output, Pixels, Rays, Stages, Times, device_name, ms, render_bands, render_partial,
+};
 use crate::film::{Format, PictureWriter, Target};
 use crate::gpu::{Ahead, DeviceKind, Gpu};
 use crate::precision::{Request, Selection};
@@ -217,9 +219,7 @@ fn render_one(
     let effects = args.picture.renderable_effects(&viewed)?;
     let selection = args.device.selection(gpu, &viewed, &effects);
     if args.explain || args.verbose {
-        let sampling = choice.as_ref().map(Choice::explanation).unwrap_or_default();
-        err!("{}{}{sampling}", explanation(&loaded.name, &effects), precision_explanation(&selection));
-        explain_device(gpu);
+        explain(&loaded.name, &effects, &selection, choice.as_ref(), gpu);
     }
     let backend = Backend::of(gpu, &selection);
 
@@ -230,7 +230,7 @@ fn render_one(
         None => Renderer::Whole(Engine::verified(backend, viewed, &effects, &options, verify)?),
         Some(choice) => Renderer::InPart(Engine::verified(backend, viewed, &effects, &options, verify)?, choice),
     };
-    let scene_hash = args.certificate.as_ref().map(|_| SceneHash::of(scene));
+    let mut certificate = CertificateFile::new(args.certificate.as_deref(), scene);
     // The renderer has what it needs: the spheres go before paths and pixels take memory.
     let (width, height) = (scene.width, scene.height);
     let (spheres, lights) = (scene.spheres.len(), scene.lights.len());
@@ -241,10 +241,9 @@ fn render_one(
     let style = if args.quiet { Style::None } else { args.progress };
     let mut progress = Progress::of_rows(style, &loaded.name, height);
     let mut sampled = None;
-    let mut hasher = args.certificate.as_ref().map(|_| PictureHasher::new(width, height));
     let not_finite = match &mut renderer {
-        Renderer::InPart(engine, Choice { density, fill }) => {
-            let (density, fill) = (*density, *fill);
+        Renderer::InPart(engine, choice) => {
+            let Choice { density, fill } = *choice;
             let samples = Samples::new((width, height), &density)?;
             let picture = render_partial(engine, backend, &samples, fill, |part| progress.set(part))?;
             let start = Instant::now();
@@ -258,38 +257,27 @@ fn render_one(
             let start = Instant::now();
             writer.write_rows(band.rgb)?;
             write_time += start.elapsed();
-            if let Some(hasher) = &mut hasher {
-                hasher.add(band.rgb);
-            }
+            certificate.add(band.rgb);
             let rows = band.rgb.len() / (width as usize * 3);
             progress.set((f64::from(band.first) + rows as f64) / f64::from(height));
             Ok::<_, Failure>(())
         })?,
     };
-    let (rays, times, verified, cut) = match &renderer {
-        Renderer::Whole(engine) => (engine.rays(), engine.times(), engine.verification(), engine.cut()),
-        Renderer::InPart(engine, _) => (engine.rays(), engine.times(), engine.verification(), engine.cut()),
-    };
-    let stages = match &renderer {
-        Renderer::Whole(engine) => engine.stages(),
-        Renderer::InPart(engine, _) => engine.stages(),
+    let Noted { rays, times, verified, cut, stages } = match &renderer {
+        Renderer::Whole(engine) => Noted::by(engine),
+        Renderer::InPart(engine, _) => Noted::by(engine),
     };
     let finishing = Instant::now();
     writer.finish()?;
     progress.finish();
     write_time += finishing.elapsed();
 
-    if let (Some(path), Some(scene), Some(hasher), Some(stages)) = (&args.certificate, scene_hash, hasher, stages) {
-        let subject = Subject::new(scene, settings, &effects, hasher.finish());
-        let kernel = Some(selection.tier).filter(|_| stages.kernel > 0);
-        save_json(path, &Certificate::new(subject, device_name(gpu), kernel, stages))?;
-    }
+    certificate.write((settings, &effects), gpu, &selection, stages)?;
     if cut > 0 && !args.quiet {
         say_cut(&loaded.name, cut, &device_name(gpu));
     }
     if not_finite > 0 {
-        let (name, pixels) = (visible(&loaded.name), count(not_finite, "pixel"));
-        errln!("trueray: {name}: not finite (NaN or infinity): {pixels}");
+        errln!("trueray: {}: not finite (NaN or infinity): {}", visible(&loaded.name), count(not_finite, "pixel"));
     }
     let stats = Stats {
         scene: loaded.name.clone(),
@@ -307,7 +295,7 @@ fn render_one(
         sampled,
         rays: rays.filter(|_| !args.no_ray_counts),
         not_finite_pixels: not_finite,
-        verified: verified.map(|(pixels, ms)| Verified { pixels, ms }),
+        verified,
         parse_ms: ms(loaded.parse_time),
         open_ms: ms(open_time),
         times,
@@ -317,8 +305,7 @@ fn render_one(
         peak_memory_mib: peak_memory_mib(),
     };
     if !args.quiet {
-        let Stats { width, height, output, device, total_ms, .. } = &stats;
-        errln!("{}: {width} × {height} on {device} in {total_ms:.0} ms", visible(output));
+        errln!("{}", stats.summary());
     }
     if args.stats || args.verbose {
         err!("{}", stats.table());
@@ -330,6 +317,22 @@ fn render_one(
 enum Renderer<'a> {
     Whole(Engine<'a>),
     InPart(Engine<'a, Pixels>, Choice),
+}
+
+/// What an engine has noted of a picture.
+struct Noted {
+    rays: Option<Rays>,
+    times: Times,
+    verified: Option<Verified>,
+    cut: u64,
+    stages: Option<Stages>,
+}
+
+impl Noted {
+    fn by<O: Output>(engine: &Engine<O>) -> Self {
+        let verified = engine.verification().map(|(pixels, ms)| Verified { pixels, ms });
+        Self { rays: engine.rays(), times: engine.times(), verified, cut: engine.cut(), stages: engine.stages() }
+    }
 }
 
 /// The folder of the file that OUTPUT names, where it does.
@@ -375,8 +378,10 @@ fn say_cut(name: &str, cut: u64, device: &str) {
     );
 }
 
-/// What the device brings of its own.
-fn explain_device(gpu: Option<&Gpu>) {
+/// Says what is simulated and sampled by which tier, and what the device brings of its own.
+fn explain(name: &str, effects: &Effects, selection: &Selection, choice: Option<&Choice>, gpu: Option<&Gpu>) {
+    let sampling = choice.map(Choice::explanation).unwrap_or_default();
+    err!("{}{}{sampling}", explanation(name, effects), precision_explanation(selection));
     let Some(gpu) = gpu else { return };
     errln!("  tuning       {}", gpu.tuned().summary());
     if let Some(note) = gpu.kernel_cache_note() {

@@ -9,7 +9,7 @@ use crate::engine::{Rays, Stages, Times};
 use crate::precision::Selection;
 use crate::sampling::{Density, Fill};
 use crate::settings::Settings;
-use crate::words::count;
+use crate::words::{count, visible};
 
 /// What was sampled of a picture, where that is not everything.
 #[derive(Debug, Serialize)]
@@ -81,6 +81,12 @@ pub(super) fn peak_memory_mib() -> Option<f64> {
 }
 
 impl Stats {
+    /// A line for everybody.
+    pub(super) fn summary(&self) -> String {
+        let Self { width, height, output, device, total_ms, .. } = self;
+        format!("{}: {width} × {height} on {device} in {total_ms:.0} ms", visible(output))
+    }
+
     pub(super) fn table(&self) -> String {
         let mut text = String::new();
         let mut row = |name: &str, value: String| {
