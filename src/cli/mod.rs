@@ -73,7 +73,7 @@ enum Command {
     /// Say where and how two pictures differ, or a picture and its scene's reference
     #[command(after_help = after_help::COMPARE)]
     Compare(compare::Args),
-    /// Say whether a picture is the one of its scene in every pixel, and its certificate is of it
+    /// Say whether a picture is its scene's in every pixel
     #[command(after_help = after_help::VERIFY)]
     Verify(verify::Args),
     /// Check scene files and summarise them, without rendering

@@ -82,6 +82,10 @@ impl fmt::Debug for KeptScene {
 /// Unsure pixels of a band from which on `double` renders them. Preparing it and finding its kernels takes 60 ms on a software device
 /// and two cores, which the reference does not need; a pixel takes the reference 0 to 3 µs longer, where there are many spheres.
 const DOUBLE_FROM: usize = 1 << 17;
+/// Once it is ready, a part of them is enough.
+const READY_PART: usize = 64;
+/// Pixels that it renders at once: a longer list than any before would take new buffers and kernels.
+const AT_ONCE: usize = DOUBLE_FROM;
 
 /// Whether the kernel of a tier has a bound of its error for such a picture. Without `f64`, pairs of `f32` stand in for `double` up to
 /// the roots alone; and no bound is kept for the mean of several samples.
@@ -128,8 +132,8 @@ impl<'a> Certifier<'a> {
         unsure: Vec<[u32; 2]>,
         mut place: impl FnMut([u32; 2], [u8; 3]),
     ) -> Result<Rendered, gpu::Error> {
-        let is_worth_it = self.double.is_some() || unsure.len() >= self.double_from;
-        let (true, Some(gpu)) = (is_worth_it, self.gpu) else {
+        let least = if self.double.is_some() { self.double_from / READY_PART } else { self.double_from };
+        let (true, Some(gpu)) = (unsure.len() >= least.max(1), self.gpu) else {
             return Ok(Rendered { unsure, ..Rendered::default() });
         };
         let double = match &mut self.double {
@@ -144,12 +148,16 @@ impl<'a> Certifier<'a> {
                 Err(error) => return Err(error),
             },
         };
-        let mut colors = vec![[0; 3]; unsure.len()];
-        let rendered = double.pixels(&unsure, &mut colors)?;
-        // What is left gets its colour later.
-        unsure.iter().zip(colors).for_each(|(&pixel, color)| place(pixel, color));
-        self.stages.double += (unsure.len() - rendered.unsure.len() - rendered.cut.len()) as u64;
-        Ok(rendered)
+        let mut left = Rendered::default();
+        let mut colors = vec![[0; 3]; unsure.len().min(AT_ONCE)];
+        for pixels in unsure.chunks(AT_ONCE) {
+            let colors = &mut colors[..pixels.len()];
+            left.add(double.pixels(pixels, colors)?);
+            // What is left gets its colour later.
+            pixels.iter().zip(colors).for_each(|(&pixel, color)| place(pixel, *color));
+        }
+        self.stages.double += (unsure.len() - left.unsure.len() - left.cut.len()) as u64;
+        Ok(left)
     }
 }
 

@@ -15,7 +15,8 @@ pub struct Rendered {
 }
 
 impl Rendered {
-    pub(super) fn add(&mut self, other: Self) {
+    /// What others say, too.
+    pub(crate) fn add(&mut self, other: Self) {
         self.not_finite += other.not_finite;
         self.unsure.extend(other.unsure);
         self.cut.extend(other.cut);
