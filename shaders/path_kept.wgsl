@@ -43,9 +43,6 @@ fn reflect(surface: Surface, color: vec3r, throughput: real, slot: u32) {
     if COUNT_RAYS {
         reflection_rays++;
     }
-    if CERTIFIED {
-        add_status(slot);
-    }
     let ray = reflection_ray(surface);
     let at = atomicAdd(&stage.next_path_count, 1u) * VECTORS;
     keep_path(at, vec4r(high_of(ray.origin), throughput));
@@ -69,6 +66,8 @@ fn shade(ray: Ray, hit: Hit, is_path: bool, slot: u32, before: vec3r, throughput
     if is_path {
         if !goes_on {
             finish(slot, color);
+        } else if CERTIFIED {
+            add_status(slot);
         }
         add_counts(slot);
     }
