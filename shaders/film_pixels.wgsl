@@ -7,19 +7,14 @@
 
 // What the primary ray says of itself, for whoever finishes its path.
 fn keep_status(slot: u32) {
-    if TANGENTS | CERTIFIED {
+    if TANGENTS {
         pixels[slot] = select(0u, STATUS_UNSURE << 24u, is_unsure);
     }
 }
 
-// Likewise a ray that goes on in another invocation.
-fn add_status(slot: u32) {
-    pixels[slot] |= select(0u, STATUS_UNSURE << 24u, is_unsure);
-}
-
 fn finish(slot: u32, color: vec3r) {
     var status = (dispatch_bits() | select(0u, STATUS_CUT, is_cut)) << 24u;
-    if TANGENTS | CERTIFIED {
+    if TANGENTS {
         status |= pixels[slot] & (STATUS_UNSURE << 24u);
     }
     if CERTIFIED {

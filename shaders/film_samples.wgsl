@@ -7,22 +7,20 @@
 
 // What the primary ray says of itself, for whoever finishes its path.
 fn keep_status(slot: u32) {
-    if TANGENTS | CERTIFIED {
+    if TANGENTS {
         colors[slot].w = select(real(0.0), real(STATUS_UNSURE), is_unsure);
     }
 }
 
-// Likewise a ray that goes on in another invocation.
-fn add_status(slot: u32) {
-    colors[slot].w = select(colors[slot].w, real(STATUS_UNSURE), is_unsure);
-}
-
 fn finish(slot: u32, color: vec3r) {
     var status = real(dispatch_bits()) + select(real(0.0), real(STATUS_CUT), is_cut);
-    if TANGENTS | CERTIFIED {
-        if CERTIFIED {
-            add_status(slot);
+    if CERTIFIED {
+        var is_marked = is_unsure;
+        if TANGENTS {
+            is_marked |= colors[slot].w != real(0.0);
         }
+        status += select(real(0.0), real(STATUS_UNSURE), is_marked);
+    } else if TANGENTS {
         status += colors[slot].w;
     }
     colors[slot] = vec4r(color, status);

@@ -372,9 +372,6 @@ pub struct Selection {
     pub covered: bool,
 }
 
-/// The first kernel of a certified picture is `fast` unless it would be unsure of more than this share of the pixels.
-const MAX_UNSURE: f64 = 0.1;
-
 impl fmt::Display for Selection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(if self.certified { CERTIFIED } else { self.tier.name() })
@@ -391,7 +388,8 @@ impl Selection {
                 let why = excess(tier).map_or_else(|| "covers the scene".into(), |why| format!("not covered: {why}"));
                 (tier, format!("asked for; {why}"))
             }
-            Request::Certified => match demand.beyond_with_share(Tier::Fast, MAX_UNSURE, viewed.scene()) {
+            // However many pixels rounding changes, `fast` knows them.
+            Request::Certified => match demand.beyond_with_share(Tier::Fast, f64::INFINITY, viewed.scene()) {
                 None => (Tier::Fast, "asked for; begun by the cheapest tier".into()),
                 Some(why) => (Tier::Double, format!("asked for; begun by double, not fast: {why}")),
             },
