@@ -14,14 +14,11 @@ fn keep_status(slot: u32) {
 
 fn finish(slot: u32, color: vec3r) {
     var status = real(dispatch_bits()) + select(real(0.0), real(STATUS_CUT), is_cut);
-    if CERTIFIED {
-        var is_marked = is_unsure;
-        if TANGENTS {
-            is_marked |= colors[slot].w != real(0.0);
-        }
-        status += select(real(0.0), real(STATUS_UNSURE), is_marked);
-    } else if TANGENTS {
+    if TANGENTS {
         status += colors[slot].w;
+    }
+    if CERTIFIED {
+        status = real(u32(status) | select(0u, STATUS_UNSURE, is_unsure));
     }
     colors[slot] = vec4r(color, status);
 }

@@ -6,7 +6,8 @@
 //   the start of its ray, and the throughput;
 //   the direction, and the index of the sample's result, which is below 2^24;
 //   the colour gathered, and the shape index, below 2^24, of the sphere that the ray leaves;
-//   the start in the object space of that sphere, and 1 where it is on the inner wall; with CERTIFIED, 2 more where it is unsure;
+//   the start in the object space of that sphere, and 1 where it is on the inner wall;
+//   with CERTIFIED, 1 where it is unsure;
 //   for the tiers that carry it, what rounding took from the start.
 //
 // Vectors of a path: as path_vectors in src/gpu/kernel/specialisation.rs has it.
@@ -30,12 +31,10 @@ fn path_of(index: u32) -> Path {
     let way = path_at(at + 1u);
     let gathered = path_at(at + 2u);
     let local = path_at(at + 3u);
-    var inside = local.w != real(0.0);
+    let own = Own(u32(gathered.w), local.w != real(0.0), local.xyz);
     if CERTIFIED {
-        is_unsure |= local.w >= real(2.0);
-        inside = (u32(local.w) & 1u) != 0u;
+        is_unsure |= path_at(at + 4u).x != real(0.0);
     }
-    let own = Own(u32(gathered.w), inside, local.xyz);
     var low = vec3r();
     if CARRIES_LOW {
         low = path_at(at + VECTORS - 1u).xyz;
@@ -53,11 +52,10 @@ fn reflect(surface: Surface, color: vec3r, throughput: real, slot: u32) {
     keep_path(at, vec4r(high_of(ray.origin), throughput));
     keep_path(at + 1u, vec4r(direction_of(ray), real(slot)));
     keep_path(at + 2u, vec4r(color, real(surface.own.shape)));
-    var marks = select(real(0.0), real(1.0), surface.own.inside);
+    keep_path(at + 3u, vec4r(surface.own.local, select(real(0.0), real(1.0), surface.own.inside)));
     if CERTIFIED {
-        marks += select(real(0.0), real(2.0), is_unsure);
+        keep_path(at + 4u, vec4r(select(real(0.0), real(1.0), is_unsure)));
     }
-    keep_path(at + 3u, vec4r(surface.own.local, marks));
     if CARRIES_LOW {
         keep_path(at + VECTORS - 1u, vec4r(low_of(ray.origin), real(0.0)));
     }

@@ -108,7 +108,7 @@ impl Specialisation {
 
     /// Vectors that keep a path: as `shaders/path_kept.wgsl` has them.
     pub(crate) fn path_vectors(&self) -> u64 {
-        4 + u64::from(self.kernel.carries_low())
+        4 + u64::from(self.certified) + u64::from(self.kernel.carries_low())
     }
 
     /// The constants by name; booleans are 0 and 1.
