@@ -8,8 +8,9 @@
 // Whether the device has ended a loop before its time: some do after 65,535 turns, without a word.
 var<private> is_cut: bool;
 
-// Whether rounding could decide whether the primary ray touches a sphere.
-var<private> is_tangent: bool;
+// Whether rounding could decide what the sample shows: with TANGENTS whether its primary ray touches a sphere, with CERTIFIED
+// anything.
+var<private> is_unsure: bool;
 
 var<private> shadow_rays: u32;
 var<private> reflection_rays: u32;
@@ -17,7 +18,7 @@ var<private> reflection_rays: u32;
 // Before anything is calculated for a slot.
 fn begin(slot: u32) {
     is_cut = false;
-    is_tangent = false;
+    is_unsure = false;
     shadow_rays = 0u;
     reflection_rays = 0u;
     if COUNT_RAYS {

@@ -47,6 +47,12 @@ fn echo_layout() {
     echo_bits(params.grid_entries);
     echo(real(params.tangent_margin));
     echo(params.quantize_scale);
+    echo(params.direction_error);
+    echo3(params.middle);
+    echo(params.extent);
+    echo(params.allowance);
+    echo(params.light_allowance);
+    echo(params.background_levels);
     for (var i = 0u; i < 2u; i++) {
         echo3(shape_of(i).center_radius.xyz);
         echo(shape_of(i).center_radius.w);
@@ -59,6 +65,7 @@ fn echo_layout() {
         echo(material_of(i).kr);
         echo(material_of(i).n);
         echo3(material_of(i).scale);
+        echo(material_of(i).ambient_levels);
     }
     for (var i = 0u; i < params.light_count; i++) {
         echo3(light_at(i).position);

@@ -17,6 +17,9 @@ override BLINN: bool = false;
 // Pixels say where rounding could decide whether a primary ray touches a sphere.
 override TANGENTS: bool = false;
 
+// Pixels say where rounding could decide anything that they show.
+override CERTIFIED: bool = false;
+
 // Side of the grid of samples in each pixel.
 override SAMPLES: u32 = 1u;
 

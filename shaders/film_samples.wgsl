@@ -1,6 +1,6 @@
 // Several samples a pixel: their results are colours, of which the pixel is the mean.
 // needs: counters, effects, real, slots, trace
-// host: STATUS_CUT, STATUS_TANGENT
+// host: STATUS_CUT, STATUS_UNSURE
 
 // With the status, as a number.
 @group(0) @binding(7) var<storage, read_write> colors: array<vec4r>;
@@ -8,13 +8,16 @@
 // What the primary ray says of itself, for whoever finishes its path.
 fn keep_status(slot: u32) {
     if TANGENTS {
-        colors[slot].w = select(real(0.0), real(STATUS_TANGENT), is_tangent);
+        colors[slot].w = select(real(0.0), real(STATUS_UNSURE), is_unsure);
     }
 }
 
 fn finish(slot: u32, color: vec3r) {
     var status = real(dispatch_bits()) + select(real(0.0), real(STATUS_CUT), is_cut);
-    if TANGENTS {
+    if CERTIFIED {
+        // Nobody knows how far the mean of several is off.
+        status += real(STATUS_UNSURE);
+    } else if TANGENTS {
         status += colors[slot].w;
     }
     colors[slot] = vec4r(color, status);

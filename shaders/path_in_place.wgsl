@@ -2,7 +2,7 @@
 //
 // Whoever casts the primary ray follows the mirrored ones too. Lanes wait for the longest path among them, but no path has to be
 // kept, and where nothing is hit there is nothing to shade.
-// needs: counters, distance, effects, film, intersect, ray, real, reflect, scene, secondary, shade, types
+// needs: bound, counters, distance, effects, film, intersect, ray, real, reflect, scene, secondary, shade, types
 
 fn follow(primary: Ray, seen: Hit, slot: u32) {
     var ray = primary;
@@ -20,6 +20,7 @@ fn follow(primary: Ray, seen: Hit, slot: u32) {
             if REFLECTIONS {
                 throughput = weakened(throughput, material.kr);
                 ray = reflection_ray(surface);
+                note_reflected(throughput);
                 if !is_cut & (material.kr != real(0.0)) & (depth < params.max_depth) {
                     if COUNT_RAYS {
                         reflection_rays++;

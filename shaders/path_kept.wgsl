@@ -1,13 +1,13 @@
 // A sample's way from bounce to bounce, by the kernels of walk_*.wgsl; read it beside src/cpu/trace.rs.
-// needs: counters, effects, film, intersect, queue, ray, real, reflect, scene, shade, tables, types
+// needs: bound, counters, effects, film, intersect, queue, ray, real, reflect, scene, shade, tables, types
 
 // Paths are samples' reflection rays and what they have gathered so far: those of this bounce, and those of the next.
 // Each path has VECTORS vectors:
 //   the start of its ray, and the throughput;
 //   the direction, and the index of the sample's result, which is below 2^24;
 //   the colour gathered, and the shape index, below 2^24, of the sphere that the ray leaves;
-//   the start in the object space of that sphere, and 1 where it is on the inner wall;
-//   for the tiers that carry it, what rounding took from the start.
+//   the start in the object space of that sphere, and 1 where it is on the inner wall; with CERTIFIED, 2 more where it is unsure;
+//   for the tiers that carry it, what rounding took from the start; with CERTIFIED what bound_cone.wgsl keeps.
 //
 // Vectors of a path: as path_vectors in src/gpu/kernel/specialisation.rs has it.
 override VECTORS: u32;
@@ -30,10 +30,18 @@ fn path_of(index: u32) -> Path {
     let way = path_at(at + 1u);
     let gathered = path_at(at + 2u);
     let local = path_at(at + 3u);
-    let own = Own(u32(gathered.w), local.w != real(0.0), local.xyz);
+    var inside = local.w != real(0.0);
+    if CERTIFIED {
+        is_unsure |= local.w >= real(2.0);
+        inside = (u32(local.w) & 1u) != 0u;
+    }
+    let own = Own(u32(gathered.w), inside, local.xyz);
     var low = vec3r();
     if CARRIES_LOW {
         low = path_at(at + VECTORS - 1u).xyz;
+    }
+    if CERTIFIED {
+        go_on_with_bound(path_at(at + VECTORS - 1u), start.w);
     }
     return Path(ray_from(point_from(start.xyz, low), way.xyz), own, u32(way.w), gathered.xyz, start.w);
 }
@@ -44,13 +52,21 @@ fn reflect(surface: Surface, color: vec3r, throughput: real, slot: u32) {
         reflection_rays++;
     }
     let ray = reflection_ray(surface);
+    note_reflected(throughput);
     let at = atomicAdd(&path_queue.next_path_count, 1u) * VECTORS;
     keep_path(at, vec4r(high_of(ray.origin), throughput));
     keep_path(at + 1u, vec4r(direction_of(ray), real(slot)));
     keep_path(at + 2u, vec4r(color, real(surface.own.shape)));
-    keep_path(at + 3u, vec4r(surface.own.local, select(real(0.0), real(1.0), surface.own.inside)));
+    var marks = select(real(0.0), real(1.0), surface.own.inside);
+    if CERTIFIED {
+        marks += select(real(0.0), real(2.0), is_unsure);
+    }
+    keep_path(at + 3u, vec4r(surface.own.local, marks));
     if CARRIES_LOW {
         keep_path(at + VECTORS - 1u, vec4r(low_of(ray.origin), real(0.0)));
+    }
+    if CERTIFIED {
+        keep_path(at + VECTORS - 1u, kept_bound());
     }
 }
 

@@ -1,6 +1,6 @@
 // Where something refracts: from the hit of a primary ray on, its tree of reflections and refractions, in which MAX_WAITING rays
 // can wait; read it beside src/cpu/trace_refraction.rs.
-// needs: counters, effects, film, intersect, ray, real, reflect, refract, scene, secondary, shade, types
+// needs: bound, counters, effects, film, intersect, ray, real, reflect, refract, scene, secondary, shade, types, waiting
 // host: MAX_WAITING
 
 // A refraction ray that waits until the reflected ray beside it has been followed to its end.
@@ -42,6 +42,7 @@ fn tree_color(primary: Ray, seen: Hit) -> vec3r {
                 if kt != real(0.0) {
                     let refracted = refraction_ray(ray, surface);
                     let weight = weakened(throughput, kt);
+                    keep_cone(count, surface, weight);
                     waiting[count] = Waiting(refracted.ray, refracted.own, weight, depth + 1u, shows_background);
                     count++;
                 }
@@ -49,6 +50,7 @@ fn tree_color(primary: Ray, seen: Hit) -> vec3r {
                     depth += 1u;
                     throughput = weakened(throughput, material.kr);
                     ray = reflection_ray(surface);
+                    note_reflected(throughput);
                     own = surface.own;
                     range = reflection_range();
                     shows_background = false;
@@ -60,11 +62,13 @@ fn tree_color(primary: Ray, seen: Hit) -> vec3r {
             }
         } else if shows_background {
             color += params.background * throughput;
+            note_background();
         }
         if count == 0u {
             break;
         }
         count--;
+        go_on_with_cone(count);
         ray = waiting[count].ray;
         own = waiting[count].own;
         range = refraction_range();

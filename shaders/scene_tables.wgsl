@@ -32,10 +32,13 @@ fn material_of(sphere: u32) -> Material {
     let color = material_at(at);
     let factors = material_at(at + 1u);
     var scale = vec3r(1.0);
+    var ambient_levels = real(0.0);
     if MATERIAL == 3u {
-        scale = material_at(at + 2u).xyz;
+        let last = material_at(at + 2u);
+        scale = last.xyz;
+        ambient_levels = last.w;
     }
-    return Material(color.xyz, color.w, factors.x, factors.y, factors.z, factors.w, scale);
+    return Material(color.xyz, color.w, factors.x, factors.y, factors.z, factors.w, scale, ambient_levels);
 }
 
 // Not from `params`: compilers for software devices look for conditions that depend on uniform buffers alone, and compile anew

@@ -1,9 +1,10 @@
 // The nearest hit and any hit among those spheres that a ray can meet; read it beside src/accel and src/cpu/intersect.rs.
-// needs: body, counters, distance, effects, intersect, kernel, ray, real, tables, types
+// needs: body, bound, counters, distance, effects, intersect, kernel, ray, real, tables, types
 // host: REACH
 
 // The nearer of a hit and the intersection with one more sphere; of equal ones the lower index.
 fn nearer_of(nearest: Hit, ray: Ray, body: Body, sphere: u32, exit: Exit, range: Range) -> Hit {
+    note_tested(ray, body, exit, range);
     return nearer_root(nearest, accepted_root(ray, body, exit, range), sphere);
 }
 
@@ -20,6 +21,7 @@ fn nearest_seen(ray: Ray, pixel: vec2<u32>) -> Hit {
     let range = primary_range();
     let tile = pixel >> vec2(params.screen_shift);
     let list = cell_at(tile.y * params.screen_across + tile.x);
+    begin_search(ray);
     var nearest = no_hit();
     var at = list.x;
     if at < list.y {
@@ -27,8 +29,9 @@ fn nearest_seen(ray: Ray, pixel: vec2<u32>) -> Hit {
             let sphere = entry_at(at);
             let body = body_of(sphere);
             nearest = nearer_root(nearest, other_root(ray, body, range), sphere);
-            if TANGENTS {
-                is_tangent |= may_touch(ray, body);
+            note_seen(ray, body, range);
+            if TANGENTS & !CERTIFIED {
+                is_unsure |= may_touch(ray, body);
             }
             at++;
             if at == list.y {
@@ -38,6 +41,7 @@ fn nearest_seen(ray: Ray, pixel: vec2<u32>) -> Hit {
     }
     // Not by the condition of the loop, which compilers may take for granted behind it.
     is_cut |= at < list.y;
+    end_search(ray, nearest, true);
     return nearest;
 }
 
@@ -104,6 +108,7 @@ fn any_hit(ray: Ray, own: Own, light: Light, index: u32, is_asked: bool) -> bool
     let list = light_list(index, from_light, is_asked);
     let distance = sqrt(dot(from_light, from_light)) + params.light_slack;
     let t_min = params.shadow_t_min;
+    begin_shadow(ray, own, exit, t_min, is_asked);
     var blocked = false;
     var is_last = false;
     var at = list.x;
@@ -115,11 +120,13 @@ fn any_hit(ray: Ray, own: Own, light: Light, index: u32, is_asked: bool) -> bool
             let is_over = is_last | blocked | (at == list.y);
             is_last |= is_behind(body, light.position, distance);
             blocked |= blocks(ray, body, exit, t_min);
+            note_crossed(ray, body, exit, t_min);
             if is_over {
                 break;
             }
         }
     }
     is_cut |= !is_last & !blocked & (at < list.y);
+    end_shadow(is_asked);
     return blocked;
 }

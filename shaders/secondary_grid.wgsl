@@ -1,5 +1,5 @@
 // The nearest intersection of a ray that leaves a surface, where all spheres are in the grid.
-// needs: grid, intersect, ray
+// needs: bound, grid, intersect, ray
 
 // Among those outside the grid.
 fn nearest_outside(ray: Ray, exit: Exit, range: Range) -> Hit {
@@ -8,5 +8,8 @@ fn nearest_outside(ray: Ray, exit: Exit, range: Range) -> Hit {
 
 fn nearest_secondary(ray: Ray, own: Own, range: Range) -> Hit {
     let exit = exit_of(own, ray);
-    return nearest_in_grid(nearest_outside(ray, exit, range), ray, exit, range);
+    begin_secondary(ray, own, exit, range);
+    let nearest = nearest_in_grid(nearest_outside(ray, exit, range), ray, exit, range);
+    end_search(ray, nearest, false);
+    return nearest;
 }

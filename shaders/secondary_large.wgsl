@@ -1,11 +1,12 @@
 // The nearest intersection of a ray that leaves a surface, where no sphere is in the grid: among all, which are few.
-// needs: body, counters, intersect, ray, search
+// needs: body, bound, counters, intersect, ray, search
 
 // Their number, where there are any.
 override SPHERE_COUNT: u32;
 
 fn nearest_secondary(ray: Ray, own: Own, range: Range) -> Hit {
     let exit = exit_of(own, ray);
+    begin_secondary(ray, own, exit, range);
     var nearest = no_hit();
     var sphere = 0u;
     // Two in each turn: see nearest_large.
@@ -19,5 +20,6 @@ fn nearest_secondary(ray: Ray, own: Own, range: Range) -> Hit {
         }
     }
     is_cut |= sphere < SPHERE_COUNT;
+    end_search(ray, nearest, false);
     return nearest;
 }

@@ -1,5 +1,5 @@
 // The exact Phong model at a hit; read it beside src/cpu/shade.rs.
-// needs: body, counters, effects, elementary, intersect, kernel, ray, real, scene, search, types
+// needs: body, bound, counters, effects, elementary, intersect, kernel, ray, real, scene, search, types
 
 // The lit point of a hit.
 struct Surface {
@@ -26,6 +26,7 @@ fn surface_at(ray: Ray, hit: Hit, material: Material) -> Surface {
     normal = unit(normal);
     normal = select(normal, -normal, hit.inside);
     let own = Own(body.shape.index, hit.inside, high_of(local));
+    note_surface(ray, body, material.scale, high_of(local), hit);
     return Surface(place_of(body, material.scale, local), normal, -unit(direction_of(ray)), own, hit.sphere);
 }
 
@@ -34,7 +35,8 @@ fn specular_power(d: real, n: real) -> real {
     return select(select(real(0.0), exponential(n * log1m(d)), d < real(1.0)), real(1.0), n <= real(0.0));
 }
 
-fn specular_term(surface: Surface, material: Material, to_light: vec3r, n_dot_l: real) -> real {
+// 1 - cos of the angle whose cosine the specular term is a power of.
+fn specular_distance(surface: Surface, to_light: vec3r, n_dot_l: real) -> real {
     // 1 - cos of the angle between two unit vectors is half the square of their difference.
     var difference: vec3r;
     if BLINN {
@@ -42,7 +44,11 @@ fn specular_term(surface: Surface, material: Material, to_light: vec3r, n_dot_l:
     } else {
         difference = surface.normal * (n_dot_l + n_dot_l) - to_light - surface.view;
     }
-    return material.ks * specular_power(real(0.5) * dot(difference, difference), material.n);
+    return real(0.5) * dot(difference, difference);
+}
+
+fn specular_term(surface: Surface, material: Material, to_light: vec3r, n_dot_l: real) -> real {
+    return material.ks * specular_power(specular_distance(surface, to_light, n_dot_l), material.n);
 }
 
 // A colour and, where it reaches the surface, the light with this index.
@@ -51,6 +57,7 @@ fn with_light(color: vec3r, index: u32, surface: Surface, material: Material, is
     let shadow_ray = ray_to_light(surface.position, light, index);
     let to_light = direction_of(shadow_ray) * (real(1.0) / sqrt(shadow_ray.a));
     let n_dot_l = dot(surface.normal, to_light);
+    note_light(surface, light, shadow_ray, material, n_dot_l, is_seen);
     // Not lit from behind, and not by a light at distance 0, where N.L is NaN.
     var is_lit = is_seen & (n_dot_l > real(0.0));
     var lit = color;
@@ -67,11 +74,13 @@ fn with_light(color: vec3r, index: u32, surface: Surface, material: Material, is
         }
         is_lit &= !any_hit(shadow_ray, surface.own, light, index, is_lit);
     }
+    note_lit(surface, light, material, to_light, n_dot_l, is_lit);
     return select(color, lit, is_lit);
 }
 
 // Colour of a surface point without its reflection; black where nothing is seen.
 fn local_color(surface: Surface, material: Material, is_seen: bool) -> vec3r {
+    note_ambient(material, is_seen);
     var color = vec3r();
     if AMBIENT {
         color = params.ambient * material.color * material.ka;

@@ -39,6 +39,16 @@ struct Params {
     tangent_margin: f32,
     // What a colour is multiplied by to be a level.
     quantize_scale: real,
+    // For certified pictures: the error of a primary ray's direction, as an angle;
+    direction_error: real,
+    // a ball around all spheres;
+    middle: vec3r,
+    extent: real,
+    // how far a ray that leaves a surface may lie beside where lists take it, and one to a light;
+    allowance: real,
+    light_allowance: real,
+    // and the levels of the background, as a number.
+    background_levels: real,
 }
 
 // What the intersection reads of a sphere.
@@ -61,6 +71,8 @@ struct Material {
     n: real,
     // Object to world space.
     scale: vec3r,
+    // For certified pictures the levels of its ambient light, as a number.
+    ambient_levels: real,
 }
 
 // The second half of a shape in a table of its own, which spheres that are no ellipsoids and share no surface do without.

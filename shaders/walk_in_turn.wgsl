@@ -3,13 +3,14 @@
 // The lanes of a vector wait for the one with the longest walk, which among many spheres takes more than twice as long as the
 // others. So an invocation walks several paths, one after another, and begins the next while its neighbours are still on their
 // way.
-// needs: counters, distance, effects, grid, intersect, path, queue, ray, real, scene, secondary, tables, types
+// needs: bound, counters, distance, effects, grid, intersect, path, queue, ray, real, scene, secondary, tables, types
 // host: MAX_LARGE
 
 // For each path the sphere that its ray meets, which is below 2^24, and these bits.
 const HIT_FOUND: u32 = 1u << 31u;
 const HIT_INSIDE: u32 = 1u << 30u;
 const HIT_CUT: u32 = 1u << 29u;
+const HIT_UNSURE: u32 = 1u << 28u;
 
 // Turns between two looks whether a lane is free for its next path.
 const TURNS: u32 = 16u;
@@ -40,11 +41,18 @@ fn walk_paths(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation
             if current < end {
                 let bits = select(0u, HIT_FOUND, nearest.found) | select(0u, HIT_INSIDE, nearest.inside);
                 let word = nearest.sphere | bits | select(0u, HIT_CUT, walk.goes_on);
-                keep_hit(current, word);
+                if CERTIFIED {
+                    end_search(ray, nearest, false);
+                    keep_hit(current, word | select(0u, HIT_UNSURE, is_unsure));
+                    is_unsure = false;
+                } else {
+                    keep_hit(current, word);
+                }
             }
             let path = path_of(min(next, end - 1u));
             ray = path.ray;
             exit = exit_of(path.own, ray);
+            begin_secondary(ray, path.own, exit, range);
             nearest = nearest_outside(ray, exit, range);
             walk = begin_walk(ray);
             walk.goes_on = next < end;
@@ -78,6 +86,10 @@ fn shade_paths(@builtin(global_invocation_id) id: vec3<u32>) {
     let path = path_of(index);
     let word = hit_at(index);
     is_cut |= (word & HIT_CUT) != 0u;
+    if CERTIFIED {
+        begin_search(path.ray);
+        is_unsure |= (word & HIT_UNSURE) != 0u;
+    }
     let hit = Hit(is_path & ((word & HIT_FOUND) != 0u), distance_of(FAR), word & 0xffffffu, (word & HIT_INSIDE) != 0u);
     shade(path.ray, hit, is_path, path.slot, path.color, path.throughput);
 }

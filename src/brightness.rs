@@ -30,6 +30,14 @@ pub enum Scalar {
 }
 
 impl Scalar {
+    /// Its unit roundoff: half a unit in the last place of 1.
+    pub const fn unit(self) -> f64 {
+        match self {
+            Self::Single => f32::EPSILON as f64 / 2.0,
+            Self::Double => f64::EPSILON / 2.0,
+        }
+    }
+
     /// The greatest weight of a ray, and its negative the least: mirrors and glass with a coefficient beyond 1 or -1 amplify no
     /// further, or products would overflow; where nothing is negative, whatever is lit at all is white long before.
     pub const fn max_throughput(self) -> f64 {

@@ -68,6 +68,13 @@ impl Camera {
         up * (self.y(j) * self.stretch) - back * (self.near() * self.stretch)
     }
 
+    /// How far the direction of a ray may be off, as an angle, where column, row and their sum are rounded to `unit`; before, they are
+    /// calculated in `f64`.
+    pub fn direction_error(&self, unit: f64) -> f64 {
+        // Column and row are at right angles.
+        2.5 * unit + 20.0 * 0.5 * f64::EPSILON * self.greatest() / self.near()
+    }
+
     /// The picture's axes in the world: to the right, upwards, and against the direction of view.
     pub fn axes(&self) -> [DVec3; 3] {
         self.view.axes()

@@ -1,8 +1,8 @@
 //! One interface to whatever renders: rows of a picture, band by band, in bounded memory.
 
+mod certify;
 mod partial;
 
-use std::cell::OnceCell;
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
@@ -11,14 +11,14 @@ use crate::cpu::{Judge, Reference, Tally};
 use crate::effects::Effects;
 use crate::gpu::{self, Gpu, GpuRenderer, Rendered};
 use crate::misuse::{Misuse, check_picture};
-use crate::precision::Tier;
-use crate::scene::Scene;
-use crate::settings::Settings;
+use crate::precision::{Selection, Tier};
 use crate::tiles::TILE;
 use crate::verify::{Verifier, Verify};
 use crate::viewed::ViewedScene;
 
 pub use crate::gpu::{Options, Output, Pixels, Rows};
+pub use certify::Stages;
+use certify::{Certifier, KeptScene, has_bound};
 #[cfg(feature = "view")]
 pub(crate) use partial::put_pixels;
 pub use partial::{Filler, PartialPicture, render_partial};
@@ -65,18 +65,29 @@ pub enum Backend<'a> {
     Reference,
     /// A Vulkan device with the kernel of a tier.
     Device(&'a Gpu, Tier),
+    /// Likewise, and whatever it takes beside that kernel so that each pixel is what the reference has.
+    Certified(&'a Gpu, Tier),
 }
 
 impl<'a> Backend<'a> {
-    /// The kernel of a tier on `gpu`; without one the reference.
-    pub fn of(gpu: Option<&'a Gpu>, tier: Tier) -> Self {
-        gpu.map_or(Self::Reference, |gpu| Self::Device(gpu, tier))
+    /// What is selected, on `gpu`; without one the reference.
+    pub fn of(gpu: Option<&'a Gpu>, selection: &Selection) -> Self {
+        let kind = if selection.certified { Self::Certified } else { Self::Device };
+        gpu.map_or(Self::Reference, |gpu| kind(gpu, selection.tier))
+    }
+
+    /// The device, if there is one.
+    pub fn gpu(&self) -> Option<&'a Gpu> {
+        match self {
+            Self::Reference => None,
+            Self::Device(gpu, _) | Self::Certified(gpu, _) => Some(gpu),
+        }
     }
 
     /// The judge of this renderer's pixels.
     pub fn judge(&self) -> Judge {
         match self {
-            Self::Reference => Judge::of(Tier::Double),
+            Self::Reference | Self::Certified(..) => Judge::of(Tier::Double),
             // Without f64 only the intersection is that of the tier: shading is in f32.
             Self::Device(gpu, Tier::Double) if !gpu.device.info.f64 => Judge::of(Tier::Robust),
             Self::Device(_, tier) => Judge::of(*tier),
@@ -105,15 +116,22 @@ pub struct CpuEngine {
     prepare: Duration,
     render: Duration,
     tally: Tally,
+    /// Pixels so far.
+    pixels: u64,
 }
 
 impl CpuEngine {
-    /// Notes what an action took and came to; returns how many pixels are not finite.
-    fn timed(&mut self, action: impl FnOnce(&Reference<f64>) -> Result<Tally, Misuse>) -> Result<u64, Misuse> {
+    /// Notes what an action on so many pixels took and came to; returns how many are not finite.
+    fn timed(
+        &mut self,
+        pixels: usize,
+        action: impl FnOnce(&Reference<f64>) -> Result<Tally, Misuse>,
+    ) -> Result<u64, Misuse> {
         let start = Instant::now();
         let tally = action(&self.reference)?;
         self.render += start.elapsed();
         self.tally = self.tally.plus(tally);
+        self.pixels += pixels as u64;
         Ok(tally.not_finite)
     }
 }
@@ -124,56 +142,50 @@ pub struct DeviceEngine<'a, O> {
     renderer: GpuRenderer<'a, O>,
     prepare: Duration,
     verifier: Option<Verifier>,
-    tangents: Option<Tangents>,
+    kept: Option<KeptScene>,
+    /// Of a certified picture.
+    certifier: Option<Certifier<'a>>,
     /// What the reference has taken to decide them.
     decided: Duration,
     /// Pixels of which the device has cut loops short.
     cut: u64,
 }
 
-/// What decides whether rays touch spheres: the reference, once such a ray is met.
-#[derive(Debug)]
-struct Tangents {
-    scene: Scene,
-    settings: Settings,
-    effects: Effects,
-    reference: OnceCell<Reference<f64>>,
-}
-
-impl Tangents {
-    fn new(viewed: ViewedScene, effects: &Effects) -> Self {
-        let (scene, settings) = viewed.into_file();
-        Self { scene: scene.clone(), settings, effects: effects.clone(), reference: OnceCell::new() }
-    }
-
-    fn reference(&self) -> &Reference<f64> {
-        self.reference.get_or_init(|| Reference::new(&self.scene.viewed(&self.settings), &self.effects))
-    }
-}
-
 impl<O: Output> DeviceEngine<'_, O> {
-    /// Decides what rounding could not and calculates what the device cannot; `place` puts a pixel's colour where it belongs.
-    /// Returns how many pixels are not finite.
+    /// Decides what rounding could not and calculates what the device cannot, of so many pixels; `place` puts a pixel's colour where it
+    /// belongs. Returns how many pixels are not finite.
     fn decide(
         &mut self,
-        Rendered { not_finite, mut tangents, cut }: Rendered,
+        Rendered { mut not_finite, mut unsure, mut cut }: Rendered,
+        pixels: usize,
         mut place: impl FnMut([u32; 2], [u8; 3]),
     ) -> Result<u64, gpu::Error> {
-        if tangents.is_empty() && cut.is_empty() {
+        self.cut += cut.len() as u64;
+        if let (Some(certifier), Some(kept)) = (&mut self.certifier, &self.kept) {
+            certifier.stages.kernel += (pixels - unsure.len() - cut.len()) as u64;
+            let left = certifier.render_again(kept, unsure, &mut place)?;
+            not_finite += left.not_finite;
+            unsure = left.unsure;
+            cut.extend(left.cut);
+        }
+        if unsure.is_empty() && cut.is_empty() {
             return Ok(not_finite);
         }
-        let reference = match (&self.verifier, &self.tangents) {
+        let start = Instant::now();
+        let reference = match (&self.verifier, &self.kept) {
             (Some(verifier), _) => verifier.reference(),
-            (None, Some(tangents)) => tangents.reference(),
+            (None, Some(kept)) => kept.reference(),
             (None, None) if cut.is_empty() => return Ok(not_finite),
             (None, None) => return Err(self.renderer.too_few_turns(cut.len())),
         };
-        self.cut += cut.len() as u64;
-        tangents.extend(cut);
-        let start = Instant::now();
-        let mut colors = vec![[0; 3]; tangents.len()];
-        let tally = reference.pixels(&tangents, &mut colors)?;
-        tangents.into_iter().zip(colors).for_each(|(pixel, color)| place(pixel, color));
+        unsure.extend(cut);
+        let mut colors = vec![[0; 3]; unsure.len()];
+        let tally = reference.pixels(&unsure, &mut colors)?;
+        if let Some(certifier) = &mut self.certifier {
+            certifier.stages.reference += unsure.len() as u64;
+            certifier.stages.more_bits += tally.more_bits;
+        }
+        unsure.into_iter().zip(colors).for_each(|(pixel, color)| place(pixel, color));
         self.decided += start.elapsed();
         Ok(not_finite + tally.not_finite)
     }
@@ -192,13 +204,14 @@ impl<'a> Engine<'a> {
     /// [`gpu::Error::Misuse`] where these are no rows of the picture.
     pub fn rows(&mut self, first: u32, rgb: &mut [u8]) -> Result<u64, gpu::Error> {
         match self {
-            Self::Cpu(cpu) => Ok(cpu.timed(|reference| reference.rows(first, rgb))?),
+            Self::Cpu(cpu) => Ok(cpu.timed(rgb.len() / 3, |reference| reference.rows(first, rgb))?),
             Self::Gpu(gpu) => {
                 let rendered = gpu.renderer.rows(first, rgb)?;
                 let width = gpu.renderer.size().0 as usize;
                 let pixels = rgb.as_chunks_mut::<3>().0;
-                let not_finite =
-                    gpu.decide(rendered, |[x, y], color| pixels[(y - first) as usize * width + x as usize] = color)?;
+                let not_finite = gpu.decide(rendered, pixels.len(), |[x, y], color| {
+                    pixels[(y - first) as usize * width + x as usize] = color;
+                })?;
                 gpu.verifier.as_mut().map_or(Ok(()), |verifier| verifier.rows(first, rgb))?;
                 Ok(not_finite)
             }
@@ -227,30 +240,51 @@ impl<'a, O: Output> Engine<'a, O> {
         verify: Verify,
     ) -> Result<Self, gpu::Error> {
         let start = Instant::now();
-        Ok(match backend {
-            Backend::Reference => {
+        let (gpu, tier) = match backend {
+            Backend::Device(gpu, tier) => (gpu, tier),
+            Backend::Certified(gpu, tier) if has_bound(gpu, tier, viewed.settings()) => (gpu, tier),
+            Backend::Reference | Backend::Certified(..) => {
                 check_picture(&viewed)?;
                 let reference = Reference::new(&viewed, effects);
-                Self::Cpu(Box::new(CpuEngine {
+                return Ok(Self::Cpu(Box::new(CpuEngine {
                     reference,
                     prepare: start.elapsed(),
                     render: Duration::ZERO,
                     tally: Tally::default(),
-                }))
+                    pixels: 0,
+                })));
             }
-            Backend::Device(gpu, tier) => {
-                let (renderer, verifier) = if verify == Verify::Nothing {
-                    (GpuRenderer::with(gpu, &viewed, effects, tier, options)?, None)
-                } else {
-                    let (renderer, accel) = GpuRenderer::with_lists(gpu, &viewed, effects, tier, options)?;
-                    (renderer, Verifier::new(&viewed, effects, accel, backend.judge(), verify))
-                };
-                let decides = renderer.tells_tangents() && verifier.is_none();
-                let tangents = decides.then(|| Tangents::new(viewed, effects));
-                let (prepare, decided) = (start.elapsed(), Duration::ZERO);
-                Self::Gpu(Box::new(DeviceEngine { renderer, prepare, verifier, tangents, decided, cut: 0 }))
-            }
-        })
+        };
+        let certified = matches!(backend, Backend::Certified(..));
+        let options = &Options { certified, ..*options };
+        let (renderer, mut lists) = if verify == Verify::Nothing && !certified {
+            (GpuRenderer::with(gpu, &viewed, effects, tier, options)?, None)
+        } else {
+            let (renderer, lists) = GpuRenderer::with_lists(gpu, &viewed, effects, tier, options)?;
+            (renderer, Some(lists))
+        };
+        // Of a certified picture rounding explains nothing.
+        let judge = (!certified).then(|| backend.judge());
+        let verifier = match verify {
+            Verify::Nothing => None,
+            verify => lists.take().and_then(|lists| Verifier::new(&viewed, effects, lists, judge, verify)),
+        };
+        let certifier = certified.then(|| Certifier::new(gpu, tier, viewed.settings()));
+        let keeps = certified || renderer.tells_tangents() && verifier.is_none();
+        let kept = keeps.then(|| KeptScene::new(viewed, effects, lists));
+        let (prepare, decided) = (start.elapsed(), Duration::ZERO);
+        Ok(Self::Gpu(Box::new(DeviceEngine { renderer, prepare, verifier, kept, certifier, decided, cut: 0 })))
+    }
+
+    /// The same where `double` renders the unsure pixels of a certified picture as soon as a band has so many: this changes no byte.
+    #[must_use]
+    pub fn with_double_from(mut self, pixels: usize) -> Self {
+        if let Self::Gpu(gpu) = &mut self
+            && let Some(certifier) = &mut gpu.certifier
+        {
+            certifier.double_from = pixels;
+        }
+        self
     }
 
     /// Width and height of the picture.
@@ -274,9 +308,13 @@ impl<'a, O: Output> Engine<'a, O> {
         match self {
             Self::Cpu(cpu) => Times { prepare_ms: ms(cpu.prepare), render_ms: ms(cpu.render), ..Times::default() },
             Self::Gpu(gpu) => {
-                let times = gpu.renderer.times();
+                let (mut times, mut prepare) = (gpu.renderer.times(), gpu.prepare);
+                if let Some(certifier) = &gpu.certifier {
+                    times = times.plus(certifier.times());
+                    prepare += certifier.prepare;
+                }
                 Times {
-                    prepare_ms: ms(gpu.prepare),
+                    prepare_ms: ms(prepare),
                     compile_ms: ms(times.compile),
                     render_ms: ms(times.render + gpu.decided),
                     read_back_ms: ms(times.read_back),
@@ -292,6 +330,16 @@ impl<'a, O: Output> Engine<'a, O> {
         match self {
             Self::Cpu(_) => 0,
             Self::Gpu(gpu) => gpu.cut,
+        }
+    }
+
+    /// By which stages the pixels so far are the reference's; `None` where they are not certified. Those of the CPU reference always are.
+    pub fn stages(&self) -> Option<Stages> {
+        match self {
+            Self::Cpu(cpu) => {
+                Some(Stages { reference: cpu.pixels, more_bits: cpu.tally.more_bits, ..Stages::default() })
+            }
+            Self::Gpu(gpu) => gpu.certifier.as_ref().map(|certifier| certifier.stages),
         }
     }
 

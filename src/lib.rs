@@ -53,6 +53,8 @@ mod cache;
 #[doc(hidden)]
 pub mod camera;
 #[doc(hidden)]
+pub mod certificate;
+#[doc(hidden)]
 pub mod cli;
 #[doc(hidden)]
 pub mod compare;
@@ -86,6 +88,7 @@ pub mod precision;
 mod random;
 mod renderer;
 mod report;
+mod roundings;
 #[doc(hidden)]
 pub mod sampling;
 #[doc(hidden)]

@@ -50,25 +50,41 @@ impl fmt::Display for Tier {
     }
 }
 
-/// The tier that the user asks for; `None` is `auto`: the cheapest that covers the scene.
+/// What the user asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Request(pub Option<Tier>);
+pub enum Request {
+    /// The cheapest tier that covers the scene.
+    #[default]
+    Auto,
+    /// This tier.
+    Tier(Tier),
+    /// The reference's picture, with whatever kernels get it soonest.
+    Certified,
+}
 
 impl FromStr for Request {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
         match Tier::ALL.into_iter().find(|tier| tier.name() == text) {
-            Some(tier) => Ok(Self(Some(tier))),
-            None if text == "auto" => Ok(Self(None)),
-            None => Err("expected auto, fast, robust or double".into()),
+            Some(tier) => Ok(Self::Tier(tier)),
+            None if text == "auto" => Ok(Self::Auto),
+            None if text == CERTIFIED => Ok(Self::Certified),
+            None => Err("expected auto, fast, robust, double or certified".into()),
         }
     }
 }
 
+/// What a picture is called that is the reference's for sure.
+const CERTIFIED: &str = "certified";
+
 impl fmt::Display for Request {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.0.map_or("auto", Tier::name))
+        f.write_str(match self {
+            Self::Auto => "auto",
+            Self::Tier(tier) => tier.name(),
+            Self::Certified => CERTIFIED,
+        })
     }
 }
 
@@ -252,6 +268,11 @@ impl Demand {
 
     /// The first demand that `tier` does not cover, in words; `None` where it covers all.
     pub fn beyond(&self, tier: Tier, scene: &Scene) -> Option<String> {
+        self.beyond_with_share(tier, tier.promise().share, scene)
+    }
+
+    /// Likewise, where rounding may change this share of the pixels.
+    fn beyond_with_share(&self, tier: Tier, most: f64, scene: &Scene) -> Option<String> {
         let promise = tier.promise();
         let name = |extreme: &Extreme| match extreme.sphere {
             Some(sphere) => scene.sphere_names.in_words("sphere", sphere),
@@ -266,7 +287,7 @@ impl Demand {
                 .then(|| format!("{what} {:.3e} of {} is below {limit:.0e}", demand.value, name(demand)))
         };
         let share = &self.share[tier as usize];
-        let too_many = !(share.value <= promise.share);
+        let too_many = !(share.value <= most);
         let pixels = || {
             let most = if share.sphere.is_some() { format!(", most by {}", name(share)) } else { String::new() };
             format!("rounding changes about one pixel in {:.0}{most}", (1.0 / share.value).max(1.0))
@@ -331,41 +352,59 @@ fn nested(scene: &Scene) -> Vec<(usize, f64)> {
 /// The tier that renders a scene, and why.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Selection {
-    /// The tier.
+    /// The tier; of a certified picture, that of its first kernel.
     pub tier: Tier,
+    /// Whether all that this kernel is unsure of is rendered again until it is what the reference has.
+    pub certified: bool,
     /// Why, in words.
     pub reason: String,
     /// What the scene demands.
     pub demand: Demand,
-    /// Whether the tier's promise covers the demand.
+    /// Whether the tier's promise covers the demand, or the picture is certified.
     pub covered: bool,
 }
 
+impl fmt::Display for Selection {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(if self.certified { CERTIFIED } else { self.tier.name() })
+    }
+}
+
 impl Selection {
-    /// The tier asked for, or the first one of `ladder` whose promise covers `viewed`; where none does, `double`.
+    /// What is asked for, or the first tier of `ladder` whose promise covers `viewed`; where none does, `double`.
     pub fn of(viewed: &ViewedScene, effects: &Effects, request: Request, ladder: &[Tier]) -> Self {
         let demand = Demand::of(viewed, effects);
         let excess = |tier| demand.beyond(tier, viewed.scene());
-        let (tier, reason) = if let Some(tier) = request.0 {
-            let why = excess(tier).map_or_else(|| "covers the scene".into(), |why| format!("not covered: {why}"));
-            (tier, format!("asked for; {why}"))
-        } else {
-            // Each tier that is passed over says why.
-            let mut passed_over = Vec::new();
-            let covering = ladder.iter().copied().find(|&tier| match excess(tier) {
-                None => true,
-                Some(why) => {
-                    passed_over.push(format!("not {tier}: {why}"));
-                    false
+        let (tier, reason) = match request {
+            Request::Tier(tier) => {
+                let why = excess(tier).map_or_else(|| "covers the scene".into(), |why| format!("not covered: {why}"));
+                (tier, format!("asked for; {why}"))
+            }
+            // However many pixels rounding changes, `fast` knows them.
+            Request::Certified => match demand.beyond_with_share(Tier::Fast, f64::INFINITY, viewed.scene()) {
+                None => (Tier::Fast, "asked for; begun by the cheapest tier".into()),
+                Some(why) => (Tier::Double, format!("asked for; begun by double, not fast: {why}")),
+            },
+            // Where only `double` is left, a certified picture may be cheaper: as soon as that is measured, it is chosen here.
+            Request::Auto => {
+                // Each tier that is passed over says why.
+                let mut passed_over = Vec::new();
+                let covering = ladder.iter().copied().find(|&tier| match excess(tier) {
+                    None => true,
+                    Some(why) => {
+                        passed_over.push(format!("not {tier}: {why}"));
+                        false
+                    }
+                });
+                match covering {
+                    Some(tier) if passed_over.is_empty() => (tier, "the cheapest tier covers the scene".into()),
+                    Some(tier) => (tier, passed_over.join("; ")),
+                    None => (Tier::Double, format!("none covers the scene; {}", passed_over.join("; "))),
                 }
-            });
-            match covering {
-                Some(tier) if passed_over.is_empty() => (tier, "the cheapest tier covers the scene".into()),
-                Some(tier) => (tier, passed_over.join("; ")),
-                None => (Tier::Double, format!("none covers the scene; {}", passed_over.join("; "))),
             }
         };
-        let covered = excess(tier).is_none();
-        Self { tier, reason, demand, covered }
+        let certified = request == Request::Certified;
+        let covered = certified || excess(tier).is_none();
+        Self { tier, certified, reason, demand, covered }
     }
 }

@@ -73,7 +73,13 @@ impl Renderer {
     /// The same with the kernels of one tier; otherwise each scene gets the cheapest that covers it.
     #[must_use]
     pub fn with_precision(self, tier: Tier) -> Self {
-        Self { precision: Request(Some(tier)), ..self }
+        Self { precision: Request::Tier(tier), ..self }
+    }
+
+    /// The same with pictures that are certified: every pixel is the reference's.
+    #[must_use]
+    pub fn with_certification(self) -> Self {
+        Self { precision: Request::Certified, ..self }
     }
 
     /// The same with so many pixels of a device's picture calculated by the reference, too; otherwise it is [`Verify::usual`].
@@ -132,11 +138,8 @@ impl Renderer {
     }
 
     fn backend(&self, viewed: &ViewedScene, effects: &Effects) -> Backend<'_> {
-        let device = |gpu| {
-            let tier = Selection::of(viewed, effects, self.precision, Gpu::ladder(gpu)).tier;
-            Backend::Device(gpu, tier)
-        };
-        self.gpu.as_ref().map_or(Backend::Reference, device)
+        let Some(gpu) = &self.gpu else { return Backend::Reference };
+        Backend::of(Some(gpu), &Selection::of(viewed, effects, self.precision, gpu.ladder()))
     }
 }
 

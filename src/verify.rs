@@ -68,7 +68,8 @@ impl fmt::Display for Verify {
 #[derive(Debug)]
 pub(crate) struct Verifier {
     reference: Reference<f64>,
-    judge: Judge,
+    /// `None` where rounding explains nothing.
+    judge: Option<Judge>,
     /// In reading order; `None` for all.
     pixels: Option<Vec<[u32; 2]>>,
     verified: u64,
@@ -76,12 +77,13 @@ pub(crate) struct Verifier {
 }
 
 impl Verifier {
-    /// For a picture by a renderer whose rounding `judge` knows and whose lists of spheres are `accel`.
+    /// For a picture by a renderer whose rounding `judge` knows and whose lists of spheres are `accel`; without a judge, nothing may
+    /// differ.
     pub(crate) fn new(
         viewed: &ViewedScene,
         effects: &Effects,
         accel: Acceleration,
-        judge: Judge,
+        judge: Option<Judge>,
         verify: Verify,
     ) -> Option<Self> {
         let start = Instant::now();
@@ -134,9 +136,9 @@ impl Verifier {
         let pairs = pixels.iter().map(|&pixel| (pixel, level(pixel))).zip(&expected);
         let differing: Vec<_> = pairs.filter(|((_, level), expected)| level != *expected).collect();
         if !differing.is_empty() {
-            let trial = self.judge.trial(&self.reference);
+            let trial = self.judge.map(|judge| judge.trial(&self.reference));
             let wrong = |&&(([x, y], level), _): &&(([u32; 2], [u8; 3]), &[u8; 3])| {
-                trial.explain(x, y, level) == Finding::Unexplained
+                trial.as_ref().is_none_or(|trial| trial.explain(x, y, level) == Finding::Unexplained)
             };
             let count = differing.iter().filter(wrong).count();
             if let Some(&(([x, y], level), expected)) = differing.iter().find(wrong) {

@@ -13,17 +13,24 @@ pub struct Rounding {
     /// Unit roundoff of the way from a place or a direction to its cell; that of `f32` for the cells of the grid, through which
     /// devices walk so at every tier.
     pub lookups: f64,
+    /// Whether there is room for the cones around its rays.
+    pub cones: bool,
 }
 
 impl Rounding {
     /// `f32` throughout.
-    pub const SINGLE: Self = Self { tests: 6e-8, lookups: 6e-8 };
+    pub const SINGLE: Self = Self { tests: 6e-8, lookups: 6e-8, cones: false };
     /// Error-free transforms of `f32` in the tests.
-    pub const COMPENSATED: Self = Self { tests: 1e-12, lookups: 6e-8 };
+    pub const COMPENSATED: Self = Self { tests: 1e-12, lookups: 6e-8, cones: false };
     /// Nothing is known: every list has every sphere.
-    pub const UNKNOWN: Self = Self { tests: 1e9, lookups: 6e-8 };
+    pub const UNKNOWN: Self = Self { tests: 1e9, lookups: 6e-8, cones: false };
     /// `f64` throughout.
-    pub const DOUBLE: Self = Self { tests: 1.2e-16, lookups: 1.2e-16 };
+    pub const DOUBLE: Self = Self { tests: 1.2e-16, lookups: 1.2e-16, cones: false };
+
+    /// The same, of a certified picture: with room for what the errors of all that came before may move a ray.
+    pub fn certified(self) -> Self {
+        Self { tests: (64.0 * self.tests).max(1e-9), lookups: 4.0 * self.lookups, cones: true }
+    }
 }
 
 /// What is added to each radius, as a part of it. A ray that starts outside the larger sphere has roots good to a tenth of
@@ -60,6 +67,35 @@ impl<'a> Enclosure<'a> {
         let magnitude = scene.spheres.par_iter().map(|s| extent(s.center) + extent(s.scale)).reduce(|| 0.0, f64::max);
         let reach = scene.lights.iter().map(|light| extent(light.position)).fold(magnitude, f64::max);
         Self { spheres: &scene.spheres, true_axes, error: ERROR_STEPS * rounding.tests * magnitude, magnitude, reach }
+    }
+
+    /// How far a ray may lie beside where a renderer's tests take it: half of what is taken for their rounding.
+    pub(super) fn allowance(&self) -> f64 {
+        0.5 * self.error
+    }
+
+    /// The same with room around each sphere for this part of the mean radius, where the rays of `rounding` have cones.
+    pub(super) fn with_room(mut self, part: f64, rounding: Rounding) -> Self {
+        if rounding.cones {
+            let radius = |s: &Sphere| s.scale.abs().max_element();
+            let mean = self.spheres.par_iter().map(radius).sum::<f64>() / self.spheres.len().max(1) as f64;
+            self.error = self.error.max(part * mean);
+        }
+        self
+    }
+
+    /// Middle and radius of a ball around all spheres.
+    pub(super) fn ball(&self) -> (DVec3, f64) {
+        let ends = |s: &Sphere| {
+            let reach = DVec3::splat(s.scale.abs().max_element());
+            (s.center - reach, s.center + reach)
+        };
+        let hull = |a: (DVec3, DVec3), b: (DVec3, DVec3)| (a.0.min(b.0), a.1.max(b.1));
+        let (low, high) = self.spheres.par_iter().map(ends).reduce(|| (DVec3::INFINITY, DVec3::NEG_INFINITY), hull);
+        if low.x > high.x {
+            return (DVec3::ZERO, 0.0);
+        }
+        (0.5 * (low + high), 0.5 * (high - low).length())
     }
 
     /// Number of spheres.

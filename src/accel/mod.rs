@@ -25,6 +25,11 @@ pub use light_buffer::{Face, LightBuffer, REACH};
 pub use lists::Lists;
 pub use screen::{Cover, ScreenLists};
 
+/// Where the cones of rays that leave a surface have room in the lists: around each sphere for this part of the mean radius. They grow
+/// with the way, those of rays to lights do not.
+const GRID_ROOM: f64 = 0.2;
+const LIGHT_ROOM: f64 = 0.05;
+
 /// The lists of one scene.
 #[derive(Debug, Clone, Default)]
 pub struct Acceleration {
@@ -34,6 +39,12 @@ pub struct Acceleration {
     pub lights: LightBuffer,
     /// For reflections, where there are any.
     pub grid: Option<Grid>,
+    /// How far a ray that leaves a surface may lie beside where the lists take it, in the units of kernels; and one to a light.
+    pub allowance: f64,
+    pub light_allowance: f64,
+    /// A ball around all spheres.
+    pub middle: DVec3,
+    pub extent: f64,
 }
 
 impl Acceleration {
@@ -49,11 +60,17 @@ impl Acceleration {
         let lights: Vec<DVec3> = scene.lights.iter().map(|light| light.position).collect();
         let lit = effects.has(Effect::Shadows);
         let spheres = scene.spheres.len();
+        let (middle, extent) = enclosure.ball();
+        let for_lights = enclosure.with_room(LIGHT_ROOM, rounding);
         let entries = density.entries_of_a_light(spheres, lights.len());
         Self {
             screen: ScreenLists::new(&enclosure, &camera, density.longest_tile),
-            lights: LightBuffer::new(&enclosure, if lit { &lights } else { &[] }, entries, rounding),
+            lights: LightBuffer::new(&for_lights, if lit { &lights } else { &[] }, entries, rounding),
             grid: Self::grid_in(&enclosure, effects, rounding, density),
+            allowance: enclosure.with_room(GRID_ROOM, rounding).allowance(),
+            light_allowance: for_lights.allowance(),
+            middle,
+            extent,
         }
     }
 
@@ -65,6 +82,8 @@ impl Acceleration {
 
     fn grid_in(enclosure: &Enclosure, effects: EffectSet, rounding: Rounding, density: &Density) -> Option<Grid> {
         let leave_surfaces = effects.has(Effect::Reflections) || effects.has(Effect::Refraction);
-        leave_surfaces.then(|| Grid::new(enclosure, density.cells_per_sphere(enclosure.len()), rounding))
+        leave_surfaces.then(|| {
+            Grid::new(&enclosure.with_room(GRID_ROOM, rounding), density.cells_per_sphere(enclosure.len()), rounding)
+        })
     }
 }

@@ -10,7 +10,7 @@ use super::phases::{PHASES, Phase};
 use crate::effects::Effects;
 use crate::engine::{Backend, Engine, Options, Rays};
 use crate::gpu::{self, DeviceInfo, Gpu};
-use crate::precision::{Selection, Tier};
+use crate::precision::Selection;
 use crate::report::number::time;
 use crate::report::{Skipped, Timings};
 use crate::scene::Scene;
@@ -135,8 +135,8 @@ pub struct SceneResult {
     pub width: u32,
     /// Rows.
     pub height: u32,
-    /// The device's tier; `None` without a device.
-    pub tier: Option<Tier>,
+    /// The device's tier, or that its picture is certified; `None` without a device.
+    pub tier: Option<String>,
     /// Who was measured.
     pub measured: Vec<Measured>,
     /// Who was not, and why.
@@ -281,7 +281,7 @@ fn measure_scene(
     }
     let viewed = scene.viewed(setup.settings);
     let effects = (setup.effects)(&viewed);
-    let tier = (setup.selection)(&viewed, &effects).tier;
+    let selection = (setup.selection)(&viewed, &effects);
     drop(viewed);
     let mut skipped = Vec::new();
     let mut contestants = Vec::new();
@@ -298,7 +298,7 @@ fn measure_scene(
             continue;
         }
         let backend = match (forecast.renderer, setup.gpu) {
-            (Renderer::Device, Some(gpu)) => Backend::Device(gpu, tier),
+            (Renderer::Device, Some(gpu)) => Backend::of(Some(gpu), &selection),
             _ => Backend::Reference,
         };
         let measured = Measured {
@@ -352,7 +352,7 @@ fn measure_scene(
         lights: scene.lights.len(),
         width: scene.width,
         height: scene.height,
-        tier: setup.gpu.map(|_| tier),
+        tier: setup.gpu.map(|_| selection.to_string()),
         measured,
         skipped,
         differing,

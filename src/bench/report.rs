@@ -90,7 +90,7 @@ fn table(family: &FamilyResult) -> Markup {
 fn row(scene: &SceneResult, measured: &Measured) -> Markup {
     let Measured { renderer, picture, phases, rays, rays_per_second } = measured;
     let Rays { primary, shadow, reflection } = rays;
-    let tier = scene.tier.filter(|_| *renderer == super::Renderer::Device);
+    let tier = scene.tier.as_ref().filter(|_| *renderer == super::Renderer::Device);
     html! {
         tr {
             td { (scene.size) }

@@ -118,7 +118,7 @@ pub fn csv(bench: &Bench) -> String {
                 height.to_string(),
                 device.clone(),
                 driver.clone(),
-                tier.map_or_else(String::new, |tier| tier.to_string()),
+                tier.clone().unwrap_or_default(),
             ];
             let differing = differing.map_or_else(String::new, |count| count.to_string());
             for measured in &scene.measured {

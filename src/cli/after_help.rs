@@ -6,7 +6,7 @@ Examples:
   trueray render scene.txt -o scene.png
 
 Exit codes: 0 ok, 2 usage, 3 scene, 4 no device, 5 device lost, 6 output, 7 no thread; \
-128 + n where signal n ended the run. compare: 0 same, 1 different, 2 trouble. stress: 1 a promise is broken.
+128 + n where signal n ended the run. compare: 0 same, 1 different, 2 trouble; verify: 0 right, 1 wrong, 2 trouble. stress: 1 a promise is broken.
 
 Environment: WGPU_ADAPTER_NAME, WGPU_POWER_PREF, WGPU_BACKEND, VK_DRIVER_FILES are honoured; \
 TRUERAY_NO_TUNING=1 ignores what `bench --tune` has kept, TRUERAY_KERNEL_CACHE=0 the kernels that \
@@ -21,6 +21,16 @@ pub(super) const COMPARE: &str = "\
 Examples:
   trueray compare --scene scene.txt mine.ppm
   trueray compare mine.ppm theirs.png --heatmap difference.png";
+
+pub(super) const VERIFY: &str = "\
+Examples:
+  trueray verify scene.png --scene scene.txt
+  trueray verify --convention exact scene.png --scene scene.txt --certificate scene.json
+
+The options that decide the picture must be those of the picture. `trueray compare --scene` says of a picture that \
+another renderer made which pixels rounding explains; here rounding explains nothing.
+
+Exit codes: 0 right, 1 wrong or another picture's certificate, 2 trouble.";
 
 pub(super) const CHECK: &str = "\
 Examples:

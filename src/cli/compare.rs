@@ -19,6 +19,7 @@ use crate::effects::Effects;
 use crate::engine::{Backend, Engine, device_name, render_picture};
 use crate::film::{Encoded, Leniency, Picture, ReadError, Target};
 use crate::gpu::Choice;
+use crate::precision::Request;
 use crate::viewed::ViewedScene;
 use crate::words::{count, visible};
 
@@ -243,11 +244,11 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Pair,
             return Err(Failure::new(USAGE, "--device cpu would compare the reference with itself"));
         }
         let gpu = open_device(choice)?;
-        let tier = args.device.selection(Some(&gpu), &viewed, &effects).tier;
-        let backend = Backend::Device(&gpu, tier);
+        let selection = args.device.selection(Some(&gpu), &viewed, &effects);
+        let backend = Backend::of(Some(&gpu), &selection);
         let mut engine = Engine::new(backend, viewed, &effects)?;
         let (rgb, not_finite) = render_picture(&mut engine)?;
-        let name = format!("{}, {tier}", device_name(Some(&gpu)));
+        let name = format!("{}, {selection}", device_name(Some(&gpu)));
         (name, rendered(rgb), Some(not_finite), backend.judge())
     };
     let (rgb, _) = render_picture(&mut Engine::new(Backend::Reference, scene.viewed(&settings), &effects)?)?;
@@ -262,7 +263,12 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Pair,
 /// here, at the tier that is asked for or that covers the scene there.
 fn judge_of_unknown(device: &DeviceOptions, viewed: &ViewedScene, effects: &Effects) -> Result<Judge, Failure> {
     let gpu = match &device.device {
-        Choice::Cpu => return Ok(device.precision.0.map_or(Backend::Reference.judge(), Judge::of)),
+        Choice::Cpu => {
+            return Ok(match device.precision {
+                Request::Tier(tier) => Judge::of(tier),
+                Request::Auto | Request::Certified => Backend::Reference.judge(),
+            });
+        }
         // The picture is there without a device, too.
         Choice::Auto => open_device(&Choice::Auto)
             .inspect_err(|error| {
@@ -271,8 +277,11 @@ fn judge_of_unknown(device: &DeviceOptions, viewed: &ViewedScene, effects: &Effe
             .ok(),
         choice => Some(open_device(choice)?),
     };
-    let tier = device.selection(gpu.as_ref(), viewed, effects).tier;
-    Ok(gpu.map_or_else(|| Judge::of(tier), |gpu| Backend::Device(&gpu, tier).judge()))
+    let selection = device.selection(gpu.as_ref(), viewed, effects);
+    Ok(match &gpu {
+        None if !selection.certified => Judge::of(selection.tier),
+        gpu => Backend::of(gpu.as_ref(), &selection).judge(),
+    })
 }
 
 /// What is worth telling of the picture files.
@@ -311,7 +320,7 @@ fn two_pictures(args: &Args, a: &Path, b: &Path) -> Result<Pair, Failure> {
 }
 
 /// A picture file, or standard input for `-`, and its name.
-fn open(path: &Path) -> Result<(String, Encoded), Failure> {
+pub(super) fn open(path: &Path) -> Result<(String, Encoded), Failure> {
     if path == Path::new("-") {
         let name = "standard input";
         return Ok((name.into(), Encoded::from_stream(name, std::io::stdin().lock())?));

@@ -11,11 +11,11 @@ use crate::words::visible_lines;
 
 /// All is well.
 pub(super) const OK: u8 = 0;
-/// `compare`: the pictures differ by more than the limits.
+/// `compare`: the pictures differ by more than the limits; `verify`: the picture is wrong.
 pub(super) const DIFFERENT: u8 = 1;
 /// `stress`: a promise is broken on this device.
 pub(super) const BROKEN: u8 = 1;
-/// The arguments make no sense; for `compare` any trouble.
+/// The arguments make no sense; for `compare` and `verify` any trouble.
 pub(super) const USAGE: u8 = 2;
 /// The scene cannot be read or has errors.
 pub(super) const SCENE: u8 = 3;

@@ -2,6 +2,7 @@
 
 mod after_help;
 mod bench;
+mod certificate;
 mod check;
 mod color;
 mod compare;
@@ -26,6 +27,7 @@ mod stats;
 mod stress;
 mod study;
 mod tune;
+mod verify;
 mod version;
 #[cfg(feature = "view")]
 mod view;
@@ -71,6 +73,9 @@ enum Command {
     /// Say where and how two pictures differ, or a picture and its scene's reference
     #[command(after_help = after_help::COMPARE)]
     Compare(compare::Args),
+    /// Say whether a picture is its scene's in every pixel
+    #[command(after_help = after_help::VERIFY)]
+    Verify(verify::Args),
     /// Check scene files and summarise them, without rendering
     #[command(after_help = after_help::CHECK)]
     Check(check::Args),
@@ -119,8 +124,12 @@ pub fn run() -> ExitCode {
     if let Err(error) = signals::watch() {
         output::errln!("trueray: signals are not watched, an interrupt may leave temporary files: {error}");
     }
-    // compare has one code for every trouble.
-    let lost = if matches!(cli.command, Some(Command::Compare(_))) { failure::USAGE } else { failure::DEVICE_LOST };
+    // These have one code for every trouble.
+    let lost = if matches!(cli.command, Some(Command::Compare(_) | Command::Verify(_))) {
+        failure::USAGE
+    } else {
+        failure::DEVICE_LOST
+    };
     if let Err(failure) = watchdog::watch(lost) {
         return failure.report().into();
     }
@@ -129,6 +138,7 @@ pub fn run() -> ExitCode {
         None => meant_command(cli.render.first_scene()).map_or_else(|| render::run(&cli.render), Err),
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Compare(args)) => Ok(compare::run(&args)),
+        Some(Command::Verify(args)) => Ok(verify::run(&args)),
         Some(Command::Check(args)) => check::run(&args),
         Some(Command::Study(args)) => study::run(&args).map(ok),
         Some(Command::Stress(args)) => stress::run(&args).map_err(Failure::without_cpu),

@@ -136,7 +136,8 @@ pub(super) struct DeviceOptions {
     /// auto, cpu, gpu (never falls back), an index of `trueray devices`, part of a device's name or driver, or its PCI id
     #[arg(long, value_name = "DEVICE", default_value = "auto")]
     pub device: Choice,
-    /// Tier of the kernel: fast, robust, double, or auto for the cheapest that covers the scene
+    /// Tier of the kernel: fast, robust, double, or auto for the cheapest that covers the scene; or certified: every pixel is the CPU
+    /// reference's
     #[arg(long, value_name = "TIER", default_value = "auto")]
     pub precision: precision::Request,
 }
@@ -185,6 +186,13 @@ impl DeviceOptions {
     /// Whether a Vulkan device is asked for, or any that there is.
     pub(super) fn uses_vulkan(&self) -> bool {
         self.device != Choice::Cpu
+    }
+
+    /// Refuses what is no tier, where the kernels of tiers are measured.
+    pub(super) fn check_tier(&self) -> Result<(), Failure> {
+        let message = "--precision certified is no tier: several kernels render a certified picture\n  help: --precision auto, \
+                       fast, robust or double";
+        if self.precision == precision::Request::Certified { Err(Failure::new(USAGE, message)) } else { Ok(()) }
     }
 
     /// The tier that renders `viewed` on `gpu`, or would on hardware where there is none.

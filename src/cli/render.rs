@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use super::certificate::CertificateFile;
 use super::failure::{Failure, OK, USAGE};
 use super::files::{check_place, json, save};
 use super::guard::Guard;
@@ -14,10 +15,12 @@ use super::progress::{Progress, Style};
 use super::sampling::{Choice, SamplingOptions};
 use super::stats::{Sampled, Stats, Verified, peak_memory_mib};
 use crate::effects::Effects;
-use crate::engine::{Backend, Engine, Options, Pixels, device_name, ms, render_bands, render_partial};
+use crate::engine::{
+    Backend, Engine, Options, Output, Pixels, Rays, Stages, Times, device_name, ms, render_bands, render_partial,
+};
 use crate::film::{Format, PictureWriter, Target};
 use crate::gpu::{Ahead, DeviceKind, Gpu};
-use crate::precision::Selection;
+use crate::precision::{Request, Selection};
 use crate::sampling::Samples;
 use crate::scene::Scene;
 use crate::settings::Settings;
@@ -59,6 +62,10 @@ pub(super) struct Args {
     /// Write the same as JSON; `-` is standard error
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     stats_json: Option<PathBuf>,
+    /// Write what certifies the picture: hashes of the scene and of the picture, settings, device, and how many pixels are right by
+    /// which stage; with --precision certified, or of the CPU reference. `trueray verify` reads it
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    certificate: Option<PathBuf>,
     /// Leave the rays out of the statistics: counting them takes time of its own
     #[arg(long, help_heading = "Output")]
     no_ray_counts: bool,
@@ -85,8 +92,10 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
     if args.scenes.len() > 1 && args.output.as_deref().is_some_and(|output| !output.is_dir()) {
         return Err(Failure::new(USAGE, "several scenes need a folder for -o, or none"));
     }
+    check_certificate(args)?;
     let settings = args.picture.settings()?;
     let mut guard = Guard::new(&args.scenes);
+    guard.options([("--certificate", &args.certificate)])?;
     if let Some(path) = args.stats_json.as_deref().filter(|path| *path != Path::new("-")) {
         check_place(path)?;
         guard.output("--stats-json", path)?;
@@ -149,6 +158,22 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
     Ok(code)
 }
 
+/// Refuses a certificate of what is not certified.
+fn check_certificate(args: &Args) -> Result<(), Failure> {
+    let why = if args.certificate.is_none() {
+        return Ok(());
+    } else if args.scenes.len() > 1 {
+        "--certificate takes one scene"
+    } else if args.sampling.is_given() {
+        "--certificate is of whole pictures: pixels that are filled are not certified"
+    } else if args.device.uses_vulkan() && args.device.precision != Request::Certified {
+        "--certificate needs a certified picture\n  help: --precision certified"
+    } else {
+        return Ok(());
+    };
+    Err(Failure::new(USAGE, why))
+}
+
 impl Args {
     /// The first of the scene files.
     pub(super) fn first_scene(&self) -> Option<&Path> {
@@ -187,11 +212,9 @@ fn render_one(
     let effects = args.picture.renderable_effects(&viewed)?;
     let selection = args.device.selection(gpu, &viewed, &effects);
     if args.explain || args.verbose {
-        let sampling = choice.as_ref().map(Choice::explanation).unwrap_or_default();
-        err!("{}{}{sampling}", explanation(&loaded.name, &effects), precision_explanation(&selection));
-        explain_device(gpu);
+        explain(&loaded.name, &effects, &selection, choice.as_ref(), gpu);
     }
-    let backend = Backend::of(gpu, selection.tier);
+    let backend = Backend::of(gpu, &selection);
 
     let wants_stats = args.stats || args.stats_json.is_some();
     let options = Options { count_rays: wants_stats && !args.no_ray_counts, ..Options::default() };
@@ -200,6 +223,7 @@ fn render_one(
         None => Renderer::Whole(Engine::verified(backend, viewed, &effects, &options, verify)?),
         Some(choice) => Renderer::InPart(Engine::verified(backend, viewed, &effects, &options, verify)?, choice),
     };
+    let mut certificate = CertificateFile::new(args.certificate.as_deref(), scene);
     // The renderer has what it needs: the spheres go before paths and pixels take memory.
     let (width, height) = (scene.width, scene.height);
     let (spheres, lights) = (scene.spheres.len(), scene.lights.len());
@@ -211,8 +235,8 @@ fn render_one(
     let mut progress = Progress::of_rows(style, &loaded.name, height);
     let mut sampled = None;
     let not_finite = match &mut renderer {
-        Renderer::InPart(engine, Choice { density, fill }) => {
-            let (density, fill) = (*density, *fill);
+        Renderer::InPart(engine, choice) => {
+            let Choice { density, fill } = *choice;
             let samples = Samples::new((width, height), &density)?;
             let picture = render_partial(engine, backend, &samples, fill, |part| progress.set(part))?;
             let start = Instant::now();
@@ -226,26 +250,27 @@ fn render_one(
             let start = Instant::now();
             writer.write_rows(band.rgb)?;
             write_time += start.elapsed();
+            certificate.add(band.rgb);
             let rows = band.rgb.len() / (width as usize * 3);
             progress.set((f64::from(band.first) + rows as f64) / f64::from(height));
             Ok::<_, Failure>(())
         })?,
     };
-    let (rays, times, verified, cut) = match &renderer {
-        Renderer::Whole(engine) => (engine.rays(), engine.times(), engine.verification(), engine.cut()),
-        Renderer::InPart(engine, _) => (engine.rays(), engine.times(), engine.verification(), engine.cut()),
+    let Noted { rays, times, verified, cut, stages } = match &renderer {
+        Renderer::Whole(engine) => Noted::by(engine),
+        Renderer::InPart(engine, _) => Noted::by(engine),
     };
     let finishing = Instant::now();
     writer.finish()?;
     progress.finish();
     write_time += finishing.elapsed();
 
+    certificate.write((settings, &effects), gpu, &selection, stages)?;
     if cut > 0 && !args.quiet {
         say_cut(&loaded.name, cut, &device_name(gpu));
     }
     if not_finite > 0 {
-        let (name, pixels) = (visible(&loaded.name), count(not_finite, "pixel"));
-        errln!("trueray: {name}: not finite (NaN or infinity): {pixels}");
+        errln!("trueray: {}: not finite (NaN or infinity): {}", visible(&loaded.name), count(not_finite, "pixel"));
     }
     let stats = Stats {
         scene: loaded.name.clone(),
@@ -258,11 +283,12 @@ fn render_one(
         tuning: gpu.map(|gpu| gpu.tuned().summary()),
         settings: *settings,
         effects,
+        certified: stages.filter(|_| selection.certified),
         precision: gpu.map(|_| selection),
         sampled,
         rays: rays.filter(|_| !args.no_ray_counts),
         not_finite_pixels: not_finite,
-        verified: verified.map(|(pixels, ms)| Verified { pixels, ms }),
+        verified,
         parse_ms: ms(loaded.parse_time),
         open_ms: ms(open_time),
         times,
@@ -272,8 +298,7 @@ fn render_one(
         peak_memory_mib: peak_memory_mib(),
     };
     if !args.quiet {
-        let Stats { width, height, output, device, total_ms, .. } = &stats;
-        errln!("{}: {width} × {height} on {device} in {total_ms:.0} ms", visible(output));
+        errln!("{}", stats.summary());
     }
     if args.stats || args.verbose {
         err!("{}", stats.table());
@@ -285,6 +310,22 @@ fn render_one(
 enum Renderer<'a> {
     Whole(Engine<'a>),
     InPart(Engine<'a, Pixels>, Choice),
+}
+
+/// What an engine has noted of a picture.
+struct Noted {
+    rays: Option<Rays>,
+    times: Times,
+    verified: Option<Verified>,
+    cut: u64,
+    stages: Option<Stages>,
+}
+
+impl Noted {
+    fn by<O: Output>(engine: &Engine<O>) -> Self {
+        let verified = engine.verification().map(|(pixels, ms)| Verified { pixels, ms });
+        Self { rays: engine.rays(), times: engine.times(), verified, cut: engine.cut(), stages: engine.stages() }
+    }
 }
 
 /// The folder of the file that OUTPUT names, where it does.
@@ -330,8 +371,10 @@ fn say_cut(name: &str, cut: u64, device: &str) {
     );
 }
 
-/// What the device brings of its own.
-fn explain_device(gpu: Option<&Gpu>) {
+/// Says what is simulated and sampled by which tier, and what the device brings of its own.
+fn explain(name: &str, effects: &Effects, selection: &Selection, choice: Option<&Choice>, gpu: Option<&Gpu>) {
+    let sampling = choice.map(Choice::explanation).unwrap_or_default();
+    err!("{}{}{sampling}", explanation(name, effects), precision_explanation(selection));
     let Some(gpu) = gpu else { return };
     errln!("  tuning       {}", gpu.tuned().summary());
     if let Some(note) = gpu.kernel_cache_note() {
@@ -350,8 +393,8 @@ pub(super) fn explanation(name: &str, effects: &Effects) -> String {
 
 /// What the scene demands and which tier that takes.
 pub(super) fn precision_explanation(selection: &Selection) -> String {
-    let Selection { tier, reason, demand, .. } = selection;
-    format!("  precision    {tier}: {reason}\n  demand       {}\n", demand.summary())
+    let Selection { reason, demand, .. } = selection;
+    format!("  precision    {selection}: {reason}\n  demand       {}\n", demand.summary())
 }
 
 fn write_stats(path: &Path, stats: &[Stats]) -> Result<(), Failure> {

@@ -36,6 +36,11 @@ pub(super) struct Choice {
 }
 
 impl SamplingOptions {
+    /// Whether a part of the pixels is asked for.
+    pub(super) fn is_given(&self) -> bool {
+        self.foveate.is_some() || self.sparse.is_some()
+    }
+
     /// What is asked for of a picture of this size; none where all pixels are sampled.
     pub(super) fn choice(&self, size: (u32, u32)) -> Result<Option<Choice>, Failure> {
         let sides = [f64::from(size.0), f64::from(size.1)];

@@ -42,11 +42,12 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let viewed = scene.viewed(&settings);
     let effects = args.picture.renderable_effects(&viewed)?;
     let gpu = open_device(&args.device.device)?;
-    let tier = args.device.selection(Some(&gpu), &viewed, &effects).tier;
+    let selection = args.device.selection(Some(&gpu), &viewed, &effects);
+    let (tier, options) = (selection.tier, Options { certified: selection.certified, ..Options::default() });
     let kernels = if is_in_part {
-        *GpuRenderer::<Pixels>::with(&gpu, &viewed, &effects, tier, &Options::default())?.specialisation()
+        *GpuRenderer::<Pixels>::with(&gpu, &viewed, &effects, tier, &options)?.specialisation()
     } else {
-        *GpuRenderer::<Rows>::with(&gpu, &viewed, &effects, tier, &Options::default())?.specialisation()
+        *GpuRenderer::<Rows>::with(&gpu, &viewed, &effects, tier, &options)?.specialisation()
     };
     let entry = chosen(args.entry.as_deref(), &kernels)?;
     let comment = if args.spirv { ";" } else { "//" };
@@ -54,7 +55,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let which = if names.len() == 1 { "the kernel".into() } else { format!("one of the kernels {}", names.join(", ")) };
     let text = if args.spirv { kernels.disassembly(entry).map_err(Error::Shader)? } else { kernels.listing(entry) };
     out!(
-        "{comment} {entry}, {which} of {} at {tier} on {}\n{text}",
+        "{comment} {entry}, {which} of {} at {selection} on {}\n{text}",
         visible(&loaded.name),
         visible(&gpu.device.info.to_string())
     );

@@ -5,11 +5,11 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use crate::effects::Effects;
-use crate::engine::{Rays, Times};
+use crate::engine::{Rays, Stages, Times};
 use crate::precision::Selection;
 use crate::sampling::{Density, Fill};
 use crate::settings::Settings;
-use crate::words::count;
+use crate::words::{count, visible};
 
 /// What was sampled of a picture, where that is not everything.
 #[derive(Debug, Serialize)]
@@ -51,6 +51,9 @@ pub(super) struct Stats {
     /// Absent where every pixel is sampled.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sampled: Option<Sampled>,
+    /// How many pixels of a certified picture are right by which stage; absent where it is not certified.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certified: Option<Stages>,
     pub rays: Option<Rays>,
     pub not_finite_pixels: u64,
     /// Absent where nothing was.
@@ -78,6 +81,12 @@ pub(super) fn peak_memory_mib() -> Option<f64> {
 }
 
 impl Stats {
+    /// A line for everybody.
+    pub(super) fn summary(&self) -> String {
+        let Self { width, height, output, device, total_ms, .. } = self;
+        format!("{}: {width} × {height} on {device} in {total_ms:.0} ms", visible(output))
+    }
+
     pub(super) fn table(&self) -> String {
         let mut text = String::new();
         let mut row = |name: &str, value: String| {
@@ -90,8 +99,11 @@ impl Stats {
             row("tuning", tuning.clone());
         }
         row("effects", format!("{} (depth {})", self.effects.set, self.effects.depth));
-        if let Some(Selection { tier, reason, .. }) = &self.precision {
-            row("precision", format!("{tier}: {reason}"));
+        if let Some(selection) = &self.precision {
+            row("precision", format!("{selection}: {}", selection.reason));
+        }
+        if let (Some(stages), Some(selection)) = (&self.certified, &self.precision) {
+            row("certified", stages.in_words(selection.tier));
         }
         if let Some(Sampled { fill, pixels, .. }) = &self.sampled {
             let all = u64::from(self.width) * u64::from(self.height);

@@ -55,6 +55,7 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    args.device.check_tier()?;
     args.reports.check(&mut Guard::new(&args.scenes))?;
     let settings = args.picture.settings()?;
     let gpu = args.device.open()?;

@@ -18,6 +18,7 @@ pub(super) fn run_tune(
     runs: usize,
     reports: &Reports,
 ) -> Result<(), Failure> {
+    device.check_tier()?;
     let choice = match &device.device {
         Choice::Cpu => {
             return Err(Failure::new(USAGE, "--tune is for Vulkan devices; the CPU reference has no tuning"));

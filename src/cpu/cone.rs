@@ -2,7 +2,7 @@
 //! decisions it does not leave sure, and how far the colour at its end may be off.
 
 use super::decision::Decision;
-use super::intersect::{Hit, Own, Range, Ray};
+use super::intersect::{Approach, Hit, Own, Range, Ray};
 use super::judge::Trial;
 use super::margin::{ANGLE, Crossing, LENGTH, Margins, Path, Roundoff, length};
 use super::refract::Snell;
@@ -240,7 +240,14 @@ impl Witness<f64> for Cone<'_> {
         self.spread.add_constant([world.background, Vec3::new(1.0, 1.0, 1.0), Vec3::new(1.0, 1.0, 1.0)]);
     }
 
-    fn surface(&mut self, world: &World<f64>, ray: &Ray<f64>, hit: &Hit<f64>, surface: &Surface<f64>) {
+    fn surface(
+        &mut self,
+        world: &World<f64>,
+        ray: &Ray<f64>,
+        hit: &Hit<f64>,
+        _at: &Approach<f64>,
+        surface: &Surface<f64>,
+    ) {
         let margins = Margins { world, ray, path: &self.path, roundoff: self.roundoff };
         let error = margins.point(hit.sphere, hit.t, surface.own.local);
         self.normal = error.normal;

@@ -160,6 +160,7 @@ impl Real for Dd {
     const ONE: Self = Self { hi: 1.0, lo: 0.0 };
     const FAR: Self = Self { hi: 3e38, lo: 0.0 };
     const MAX_THROUGHPUT: Self = Self { hi: Scalar::Double.max_throughput(), lo: 0.0 };
+    const UNIT: f64 = 2e-31;
     const ROUNDING: Rounding = Rounding::DOUBLE;
 
     #[inline]

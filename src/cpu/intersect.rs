@@ -10,6 +10,7 @@ use super::real::Real;
 use super::scene::{Shape, World};
 use super::tangent::Tangents;
 use super::vec3::Vec3;
+use super::witness::Witness;
 use crate::accel::REACH;
 
 /// origin + t·direction; the direction need not be normalised.
@@ -104,19 +105,23 @@ pub(crate) struct Range<T> {
 
 /// The least root of one sphere that counts, and whether it is the greater one.
 #[inline]
-pub(crate) fn accepted_root<T: Real>(
+pub(crate) fn accepted_root<T: Real, W: Witness<T>>(
     ray: &Ray<T>,
     shape: &Shape<T>,
     own: Option<&Own<T>>,
     range: &Range<T>,
+    witness: &mut W,
 ) -> Option<(T, bool)> {
     let Range { t_min, t_max, .. } = *range;
     if let Some(own) = own.filter(|own| own.shape == shape.index) {
         // The outside of a convex surface is never met again.
         let t = exit_of(own, ray.direction, shape);
+        witness.tested_own(ray, own, shape, t, range);
         return (own.inside && t > t_min && t < t_max).then_some((t, true));
     }
-    least_of(roots(&approach(ray, shape), shape.radius)?, range)
+    let at = approach(ray, shape);
+    witness.tested(ray, shape, &at, range);
+    least_of(roots(&at, shape.radius)?, range)
 }
 
 /// The least of both roots that counts, and whether it is the greater one.
@@ -141,29 +146,33 @@ pub(crate) struct Primary<'a, T> {
 
 /// The least root of one sphere that counts along a primary ray. Whether the two meet is decided exactly.
 #[inline]
-pub(crate) fn primary_root<T: Real>(
+pub(crate) fn primary_root<T: Real, W: Witness<T>>(
     ray: &Ray<T>,
     shape: &Shape<T>,
     range: &Range<T>,
     tangents: &Tangents,
     touches: impl FnOnce() -> Ordering,
+    witness: &mut W,
 ) -> Option<(T, bool)> {
-    let at = tangents.decided(approach(ray, shape), shape, touches);
+    let at = approach(ray, shape);
+    witness.tested(ray, shape, &at, range);
+    let at = tangents.decided(at, shape, touches);
     least_of(roots(&at, shape.radius)?, range)
 }
 
 /// The nearest of `nearest` and the intersections with `spheres` in `range`; of equal ones the lowest index.
-pub(super) fn nearest_of<T: Real>(
+pub(super) fn nearest_of<T: Real, W: Witness<T>>(
     world: &World<T>,
     ray: &Ray<T>,
     own: Option<&Own<T>>,
     range: &Range<T>,
     spheres: &[u32],
     mut nearest: Option<Hit<T>>,
+    witness: &mut W,
 ) -> Option<Hit<T>> {
     for &sphere in spheres {
         let sphere = sphere as usize;
-        nearest = nearer_of(nearest, sphere, accepted_root(ray, &world.shapes[sphere], own, range));
+        nearest = nearer_of(nearest, sphere, accepted_root(ray, &world.shapes[sphere], own, range, witness));
     }
     nearest
 }
@@ -182,30 +191,37 @@ fn nearer_of<T: Real>(nearest: Option<Hit<T>>, sphere: usize, root: Option<(T, b
 }
 
 /// The nearest intersection of a primary ray.
-pub(crate) fn nearest_seen<T: Real>(world: &World<T>, primary: &Primary<T>) -> Option<Hit<T>> {
+pub(crate) fn nearest_seen<T: Real, W: Witness<T>>(
+    world: &World<T>,
+    primary: &Primary<T>,
+    witness: &mut W,
+) -> Option<Hit<T>> {
     let Primary { ray, sample, seen } = primary;
+    witness.search(ray, false);
     let mut nearest = None;
     for &sphere in *seen {
         let sphere = sphere as usize;
         let touches = || world.exact.discriminant(*sample, sphere);
-        let root = primary_root(ray, &world.shapes[sphere], &world.primary, &world.tangents, touches);
+        let root = primary_root(ray, &world.shapes[sphere], &world.primary, &world.tangents, touches, witness);
         nearest = nearer_of(nearest, sphere, root);
     }
     nearest
 }
 
 /// The nearest intersection of a ray that leaves a surface.
-pub(crate) fn nearest_secondary<T: Real>(
+pub(crate) fn nearest_secondary<T: Real, W: Witness<T>>(
     world: &World<T>,
     ray: &Ray<T>,
     own: &Own<T>,
     range: &Range<T>,
+    witness: &mut W,
 ) -> Option<Hit<T>> {
     let own = Some(own);
     let grid = world.accel.grid.as_ref()?;
-    let mut nearest = nearest_of(world, ray, own, range, grid.large(), None);
+    witness.search(ray, false);
+    let mut nearest = nearest_of(world, ray, own, range, grid.large(), None, witness);
     for step in grid.walk(ray.origin.to_f64(), ray.direction.to_f64()) {
-        nearest = nearest_of(world, ray, own, range, grid.lists.of(step.cell), nearest);
+        nearest = nearest_of(world, ray, own, range, grid.lists.of(step.cell), nearest, witness);
         if nearest.is_some_and(|hit| step.ends_the_walk(hit.t.to_f64())) {
             break;
         }
@@ -213,34 +229,76 @@ pub(crate) fn nearest_secondary<T: Real>(
     nearest
 }
 
-/// Whether a root that counts lies beyond `t_min` and before t = 1: from where both ends lie, without a square root.
-pub(crate) fn blocks<T: Real>(ray: &Ray<T>, shape: &Shape<T>, own: &Own<T>, t_min: T) -> bool {
-    if own.shape == shape.index {
-        let t = exit_of(own, ray.direction, shape);
-        return own.inside && t > t_min && t < T::ONE;
+/// How a shadow ray, which ends at t = 1, crosses a sphere.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Crossing<T> {
+    pub at: Approach<T>,
+    /// Squared distances from the centre, in object space: where the ray begins to count, and of its end.
+    pub start_squared: T,
+    pub end_squared: T,
+}
+
+impl<T: Real> Crossing<T> {
+    pub(crate) fn of(ray: &Ray<T>, shape: &Shape<T>, t_min: T) -> Self {
+        let at = approach(ray, shape);
+        let start = at.origin + at.direction * t_min;
+        let end = at.origin + at.direction;
+        Self { at, start_squared: start.dot(start), end_squared: end.dot(end) }
     }
-    let at = approach(ray, shape);
-    let start = at.origin + at.direction * t_min;
-    let end = at.origin + at.direction;
-    let (end_squared, radius_squared) = (end.dot(end), shape.radius * shape.radius);
-    let starts_outside = start.dot(start) > radius_squared;
-    let crosses = if starts_outside { end_squared < radius_squared } else { end_squared > radius_squared };
-    // An end on the very surface is not beyond it.
-    let passes = starts_outside && end_squared >= radius_squared && at.b > at.a * t_min && at.b < at.a;
-    at.discriminant >= T::ZERO && (crosses || passes)
+
+    /// Whether a root that counts lies beyond `t_min` and before t = 1: from where both ends lie, without a square root.
+    pub(crate) fn blocks(&self, radius: T, t_min: T) -> bool {
+        let Self { at, start_squared, end_squared } = self;
+        let radius_squared = radius * radius;
+        let starts_outside = *start_squared > radius_squared;
+        let crosses = if starts_outside { *end_squared < radius_squared } else { *end_squared > radius_squared };
+        // An end on the very surface is not beyond it.
+        let passes = starts_outside && *end_squared >= radius_squared && at.b > at.a * t_min && at.b < at.a;
+        at.discriminant >= T::ZERO && (crosses || passes)
+    }
+}
+
+/// Whether a ray from the surface of a sphere meets that sphere again beyond `t_min` and before t = 1.
+fn own_blocks<T: Real>(own: &Own<T>, t: T, t_min: T) -> bool {
+    own.inside && t > t_min && t < T::ONE
 }
 
 /// Whether any sphere stands between the ray's origin and the light with this index at t = 1.
-pub(crate) fn any_hit<T: Real>(world: &World<T>, ray: &Ray<T>, own: &Own<T>, light: usize) -> bool {
+pub(crate) fn any_hit<T: Real, W: Witness<T>>(
+    world: &World<T>,
+    ray: &Ray<T>,
+    own: &Own<T>,
+    light: usize,
+    witness: &mut W,
+) -> bool {
     let from_light = (-ray.direction).to_f64();
     let lights = &world.accel.lights;
     let distance = from_light.length() + lights.slack;
-    lights
-        .at(light, from_light)
-        .iter()
-        .map(|&sphere| &world.shapes[sphere as usize])
-        .take_while(|shape| !is_behind(ray, shape, distance))
-        .any(|shape| blocks(ray, shape, own, world.shadow_t_min))
+    let range = Range { t_min: world.shadow_t_min, t_max: T::ONE, greater: true };
+    witness.search(ray, true);
+    let mut is_blocked = false;
+    for &sphere in lights.at(light, from_light) {
+        let shape = &world.shapes[sphere as usize];
+        if is_behind(ray, shape, distance) {
+            break;
+        }
+        let is_last = if own.shape == shape.index {
+            let t = exit_of(own, ray.direction, shape);
+            witness.tested_own(ray, own, shape, t, &range);
+            let blocks = own_blocks(own, t, range.t_min);
+            is_blocked |= blocks;
+            blocks
+        } else {
+            let crossing = Crossing::of(ray, shape, range.t_min);
+            let blocks = crossing.blocks(shape.radius, range.t_min);
+            is_blocked |= blocks;
+            witness.crossed(ray, shape, &crossing, blocks, range.t_min)
+        };
+        if is_last {
+            break;
+        }
+    }
+    is_blocked
 }
 
 /// Whether a sphere, and so all that follow in a light's list, lies too far from the light, at t = 1, to stand before a point at this distance

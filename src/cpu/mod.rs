@@ -1,5 +1,6 @@
 //! The CPU reference: the specification in `f64`, written to be read beside the shaders.
 
+mod bound;
 mod cone;
 mod constants;
 mod dd;
@@ -31,5 +32,7 @@ pub use fill::{filled, nearest_samples};
 pub use judge::{Finding, Judge, Trial};
 pub use pick::{PrimaryHit, picked};
 pub use real::Real;
+#[doc(hidden)]
+pub use render::Bounded;
 pub use render::{Reference, Tally};
 pub(crate) use vec3::Vec3;

@@ -92,13 +92,13 @@ pub fn refracted<T: Real>(origin: DVec3, direction: DVec3, bodies: &[GlassBody],
     let mut ray = Ray { origin: Vec3::from_f64(origin), direction: Vec3::from_f64(direction) };
     let mut own: Option<Own<T>> = None;
     let all: Vec<u32> = (0..bodies.len() as u32).collect();
-    let mut hit = nearest_of(&world, &ray, None, &world.refraction, &all, None);
+    let mut hit = nearest_of(&world, &ray, None, &world.refraction, &all, None, &mut ());
     for _ in 0..bounces {
         let Some(found) = hit else { break };
-        let surface = surface_at(&world, &ray, &found);
+        let surface = surface_at(&world, &ray, &found, &mut ());
         let (next, wall) = refraction_ray(&ray, &surface, &snell_at(&world, &surface));
         ray = next;
-        hit = nearest_of(&world, &ray, Some(own.insert(wall)), &world.refraction, &all, None);
+        hit = nearest_of(&world, &ray, Some(own.insert(wall)), &world.refraction, &all, None, &mut ());
     }
     let met = |hit: Hit<T>| (hit.t.to_f64(), hit.sphere, hit.inside);
     Passage { origin: ray.origin.to_f64(), direction: ray.direction.to_f64(), hit: hit.map(met) }
@@ -143,6 +143,11 @@ fn glass_world<T: Real>(bodies: &[GlassBody]) -> World<T> {
         refracts: true,
         specular: Specular::Phong,
         max_depth: 0,
+        allowance: T::FAR,
+        light_allowance: T::FAR,
+        ellipsoids: true,
+        middle: Vec3::ZERO,
+        extent: T::ONE,
         accel: Acceleration::default(),
         tangents: Tangents::default(),
         exact: ExactScene::default(),

@@ -51,7 +51,7 @@ pub fn picked(viewed: &ViewedScene, x: u32, y: u32) -> Option<PrimaryHit> {
         let Ellipsoid { center, inv_scale, radius, .. } = ellipsoid;
         let (center, inv_scale) = (Vec3::from_f64(center), Vec3::from_f64(inv_scale));
         let shape = Shape { center, inv_scale, radius, index: sphere as u32 };
-        if let Some((t, inside)) = primary_root(&ray, &shape, &range, &tangents, touches) {
+        if let Some((t, inside)) = primary_root(&ray, &shape, &range, &tangents, touches, &mut ()) {
             range.t_max = t;
             nearest = Some((sphere, inside));
         }

@@ -31,6 +31,9 @@ pub trait Real:
     /// The greatest weight of a ray.
     const MAX_THROUGHPUT: Self;
 
+    /// Unit roundoff of its operations.
+    const UNIT: f64;
+
     /// How the type rounds.
     const ROUNDING: Rounding;
 
@@ -63,12 +66,13 @@ pub trait Real:
 }
 
 macro_rules! impl_real {
-    ($t:ty, $scalar:expr, $rounding:expr) => {
+    ($t:ty, $scalar:expr, $unit:expr, $rounding:expr) => {
         impl Real for $t {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
             const FAR: Self = 3e38;
             const MAX_THROUGHPUT: Self = $scalar.max_throughput() as $t;
+            const UNIT: f64 = $unit;
             const ROUNDING: Rounding = $rounding;
 
             fn from_f64(x: f64) -> Self {
@@ -96,5 +100,5 @@ macro_rules! impl_real {
     };
 }
 
-impl_real!(f32, Scalar::Single, Rounding::SINGLE);
-impl_real!(f64, Scalar::Double, Rounding::DOUBLE);
+impl_real!(f32, Scalar::Single, Scalar::Single.unit(), Rounding::SINGLE);
+impl_real!(f64, Scalar::Double, Scalar::Double.unit(), Rounding::DOUBLE);

@@ -3,6 +3,8 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::bound::Bound;
+use super::decision::Decision;
 use super::intersect::{Own, Primary, Ray};
 use super::real::Real;
 use super::scene::World;
@@ -59,6 +61,24 @@ impl<T: Real> Reference<T> {
         (i < width && j < height).then(|| self.pixel_color(i, j, &mut ()).to_f64())
     }
 
+    /// Pixel (column `i`, row `j`) of a picture with one sample a pixel, with the bound of its error, beside a renderer whose unit roundoff
+    /// is `others` of this one's; `None` where the picture has no such pixel.
+    #[doc(hidden)]
+    pub fn bounded(&self, i: u32, j: u32, others: f64) -> Option<Bounded> {
+        let (width, height) = self.size();
+        let primary = (i < width && j < height).then(|| self.primaries(i, j).next()).flatten()?;
+        let mut bound = Bound::new(&self.world, T::from_f64(self.camera.direction_error(T::UNIT)));
+        let color = trace(&self.world, &primary, &mut bound);
+        let levels = Levels::new(self.quantize);
+        let is_step = !bound.has_sure_levels(color, &levels, T::from_f64(others));
+        Some(Bounded {
+            color: color.to_f64(),
+            error: bound.error_of(color).to_f64(),
+            levels: levels.levels(color),
+            doubt: bound.unsure.or(is_step.then_some(Decision::QuantisationStep)),
+        })
+    }
+
     /// The unclamped colour of a pixel.
     fn pixel_color<W: Witness<T>>(&self, i: u32, j: u32, witness: &mut W) -> Vec3<T> {
         let samples = self.primaries(i, j).map(|primary| trace(&self.world, &primary, witness));
@@ -94,7 +114,7 @@ impl<T: Real> Reference<T> {
                 let color = self.pixel_color(i, j, &mut tally);
                 tally.primary += samples;
                 tally.not_finite += u64::from(!color.to_f64().is_finite());
-                *pixel = levels(self.quantize, color);
+                *pixel = Levels::new(self.quantize).levels(color);
             }
             tally
         };
@@ -112,7 +132,7 @@ impl<T: Real> Reference<T> {
         let each = |(&[i, j], target): (&[u32; 2], &mut [u8; 3])| {
             let mut tally = Tally::default();
             let color = self.pixel_color(i, j, &mut tally);
-            *target = levels(self.quantize, color);
+            *target = Levels::new(self.quantize).levels(color);
             let not_finite = u64::from(!color.to_f64().is_finite());
             tally.plus(Tally { primary: samples, not_finite, ..Tally::default() })
         };
@@ -136,15 +156,49 @@ fn resolve<T: Real>(mut samples: impl Iterator<Item = Vec3<T>>, side: u32) -> Ve
     first + Vec3::new(excess.x / count, excess.y / count, excess.z / count)
 }
 
-/// The 8-bit RGB of an unclamped colour, calculated in its scalar; NaN becomes 0. Read it beside `shaders/quantize.wgsl`.
-pub(super) fn levels<T: Real>(quantize: Quantize, color: Vec3<T>) -> [u8; 3] {
-    let (scale, bias) = (T::from_f64(quantize.scale()), T::from_f64(quantize.bias()));
-    let level = |c: T| {
+/// From colours to levels, calculated in `T`; read it beside `shaders/quantize.wgsl`.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Levels<T> {
+    scale: T,
+    bias: T,
+}
+
+impl<T: Real> Levels<T> {
+    pub(super) fn new(quantize: Quantize) -> Self {
+        Self { scale: T::from_f64(quantize.scale()), bias: T::from_f64(quantize.bias()) }
+    }
+
+    /// The 8-bit RGB of an unclamped colour; NaN becomes 0.
+    pub(super) fn levels(&self, color: Vec3<T>) -> [u8; 3] {
+        [color.x, color.y, color.z].map(|c| self.level(c))
+    }
+
+    fn level(&self, c: T) -> u8 {
         let low = if c > T::ZERO { c } else { T::ZERO };
         let clamped = if low > T::ONE { T::ONE } else { low };
-        (scale * clamped + bias).to_f64() as u8
-    };
-    [level(color.x), level(color.y), level(color.z)]
+        (self.scale * clamped + self.bias).to_f64() as u8
+    }
+
+    /// Whether all colours that are off by no more than `error` have the same levels, in arithmetic with the unit roundoff `u`.
+    pub(super) fn are_equal(&self, color: Vec3<T>, error: T, u: T) -> bool {
+        let error = error + T::from_f64(4.0) * u;
+        let is_sure = |c: T| error.is_finite() && c.is_finite() && self.level(c - error) == self.level(c + error);
+        is_sure(color.x) && is_sure(color.y) && is_sure(color.z)
+    }
+}
+
+/// A pixel with the bound of its error.
+#[doc(hidden)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounded {
+    /// The unclamped colour.
+    pub color: DVec3,
+    /// How far each channel may be off, where no decision is in doubt but that of a quantisation step.
+    pub error: f64,
+    /// The levels.
+    pub levels: [u8; 3],
+    /// What leaves the levels in doubt.
+    pub doubt: Option<Decision>,
 }
 
 /// What rendering some rows came to.
@@ -158,6 +212,8 @@ pub struct Tally {
     pub shadow: u64,
     /// Reflected and refracted rays.
     pub reflection: u64,
+    /// Pixels that took more bits than `f64` has.
+    pub more_bits: u64,
 }
 
 impl Tally {
@@ -169,6 +225,7 @@ impl Tally {
             primary: self.primary + other.primary,
             shadow: self.shadow + other.shadow,
             reflection: self.reflection + other.reflection,
+            more_bits: self.more_bits + other.more_bits,
         }
     }
 }

@@ -88,6 +88,14 @@ pub(crate) struct World<T> {
     pub refracts: bool,
     pub specular: Specular,
     pub max_depth: u32,
+    /// How far a ray may lie beside where `accel` takes it.
+    pub allowance: T,
+    pub light_allowance: T,
+    /// Whether object space differs from the world by more than a translation.
+    pub ellipsoids: bool,
+    /// A ball around all spheres.
+    pub middle: Vec3<T>,
+    pub extent: T,
     /// Which spheres a ray can meet.
     pub accel: Acceleration,
     /// Which primary rays may just touch a sphere,
@@ -130,6 +138,11 @@ impl<T: Real> World<T> {
             refracts: on(Effect::Refraction),
             specular: settings.specular,
             max_depth: effects.depth,
+            allowance: T::from_f64(accel.allowance),
+            light_allowance: T::from_f64(accel.light_allowance),
+            ellipsoids: on(Effect::Ellipsoids),
+            middle: Vec3::from_f64(accel.middle),
+            extent: T::from_f64(accel.extent),
             accel,
             tangents: Tangents::of(ellipsoids.par_iter().copied(), viewed, T::ROUNDING.tests),
             exact: ExactScene::new(viewed, on(Effect::Ellipsoids)),

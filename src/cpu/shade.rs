@@ -21,7 +21,12 @@ pub(crate) struct Surface<T> {
 
 #[allow(clippy::inline_always, reason = "a call costs a tenth of the picture: the hit goes through memory")]
 #[inline(always)]
-pub(crate) fn surface_at<T: Real>(world: &World<T>, ray: &Ray<T>, hit: &Hit<T>) -> Surface<T> {
+pub(crate) fn surface_at<T: Real, W: Witness<T>>(
+    world: &World<T>,
+    ray: &Ray<T>,
+    hit: &Hit<T>,
+    witness: &mut W,
+) -> Surface<T> {
     let shape = &world.shapes[hit.sphere];
     let material = &world.materials[hit.sphere];
     // From the closest approach, half a chord back or forth: S' + τc' would lose what distance costs.
@@ -29,13 +34,15 @@ pub(crate) fn surface_at<T: Real>(world: &World<T>, ray: &Ray<T>, hit: &Hit<T>) 
     let half_chord = at.direction * (max(at.discriminant, T::ZERO) / at.a).sqrt();
     let local = if hit.inside { at.perpendicular + half_chord } else { at.perpendicular - half_chord };
     let outward = (local * shape.inv_scale).normalize();
-    Surface {
+    let surface = Surface {
         position: shape.center + local * material.scale,
         normal: if hit.inside { -outward } else { outward },
         view: -ray.direction.normalize(),
         own: Own { shape: shape.index, inside: hit.inside, local },
         sphere: hit.sphere,
-    }
+    };
+    witness.surface(world, ray, hit, &at, &surface);
+    surface
 }
 
 /// cosⁿ from d = 1 − cos: exp(n·log1p(−d)) keeps what a power of the rounded cosine loses near 1.
@@ -96,7 +103,7 @@ fn with_light<T: Real, W: Witness<T>>(
         return color;
     }
     if world.shadows {
-        let is_blocked = any_hit(world, &shadow_ray, &surface.own, index);
+        let is_blocked = any_hit(world, &shadow_ray, &surface.own, index, witness);
         if witness.blocked(world, &shadow_ray, &surface.own, is_blocked) {
             return color;
         }
@@ -123,4 +130,8 @@ pub(crate) fn local_color<T: Real, W: Witness<T>>(world: &World<T>, surface: &Su
 
 pub(crate) fn max<T: Real>(a: T, b: T) -> T {
     if a > b { a } else { b }
+}
+
+pub(crate) fn min<T: Real>(a: T, b: T) -> T {
+    if a < b { a } else { b }
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::constants::Constants;
 use super::margin::Roundoff;
-use super::render::levels;
+use super::render::Levels;
 use super::scene::{Material, PointLight, World};
 use super::vec3::Vec3;
 use crate::settings::Quantize;
@@ -181,7 +181,7 @@ impl Shade {
             // What has one value has one level, but that of the file's decimals may be a step that the nearest numbers miss.
             let own = |color: DVec3| {
                 if roundoff.is_single() {
-                    levels(quantize, Vec3::<f32>::from_f64(color))
+                    Levels::<f32>::new(quantize).levels(Vec3::from_f64(color))
                 } else {
                     quantize.levels(color)
                 }

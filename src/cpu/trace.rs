@@ -14,7 +14,7 @@ pub(crate) fn trace<T: Real, W: Witness<T>>(world: &World<T>, primary: &Primary<
     if world.refracts {
         return tree_color(world, primary, witness);
     }
-    let hit = nearest_seen(world, primary);
+    let hit = nearest_seen(world, primary, witness);
     let hit = witness.nearest(world, &primary.ray, None, &world.primary, hit);
     follow(world, primary.ray, hit, witness)
 }
@@ -36,8 +36,7 @@ fn follow<T: Real, W: Witness<T>>(
     let mut depth = 0;
     // A reflection ray that hits nothing adds black.
     while let Some(found) = hit {
-        let surface = surface_at(world, &ray, &found);
-        witness.surface(world, &ray, &found, &surface);
+        let surface = surface_at(world, &ray, &found, witness);
         color += local_color(world, &surface, witness) * throughput;
 
         let kr = world.materials[surface.sphere].kr;
@@ -47,8 +46,8 @@ fn follow<T: Real, W: Witness<T>>(
         depth += 1;
         throughput = throughput.weakened(kr);
         ray = reflection_ray(&surface);
-        hit = nearest_secondary(world, &ray, &surface.own, &world.reflection);
         witness.reflected(throughput);
+        hit = nearest_secondary(world, &ray, &surface.own, &world.reflection, witness);
         hit = witness.nearest(world, &ray, Some(&surface.own), &world.reflection, hit);
     }
     color

@@ -32,13 +32,12 @@ pub(super) fn tree_color<T: Real, W: Witness<T>>(world: &World<T>, primary: &Pri
     let mut shows_background = true;
     loop {
         let hit = match &own {
-            None => nearest_seen(world, primary),
-            Some(own) => nearest_secondary(world, &ray, own, &range),
+            None => nearest_seen(world, primary, witness),
+            Some(own) => nearest_secondary(world, &ray, own, &range, witness),
         };
         let hit = witness.nearest(world, &ray, own.as_ref(), &range, hit);
         if let Some(found) = hit {
-            let surface = surface_at(world, &ray, &found);
-            witness.surface(world, &ray, &found, &surface);
+            let surface = surface_at(world, &ray, &found, witness);
             color += local_color(world, &surface, witness) * throughput;
 
             if depth < world.max_depth {

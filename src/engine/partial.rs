@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use super::{Backend, Engine, ms};
 use crate::cpu;
-use crate::gpu::{self, DeviceKind, Pixels, Reconstructor};
+use crate::gpu::{self, DeviceKind, Gpu, Pixels, Reconstructor};
 use crate::misuse::Misuse;
 use crate::sampling::{Fill, Samples};
 
@@ -18,14 +18,14 @@ impl Engine<'_, Pixels> {
     /// [`gpu::Error::Misuse`] where a pixel is not of the picture, or there is not one colour for each.
     pub fn pixels(&mut self, pixels: &[[u32; 2]], colors: &mut [[u8; 3]]) -> Result<u64, gpu::Error> {
         match self {
-            Self::Cpu(cpu) => Ok(cpu.timed(|reference| reference.pixels(pixels, colors))?),
+            Self::Cpu(cpu) => Ok(cpu.timed(pixels.len(), |reference| reference.pixels(pixels, colors))?),
             Self::Gpu(gpu) => {
                 let rendered = gpu.renderer.pixels(pixels, colors)?;
                 let mut places: HashMap<_, Vec<usize>> = HashMap::new();
-                if !rendered.tangents.is_empty() {
+                if !rendered.unsure.is_empty() || !rendered.cut.is_empty() {
                     pixels.iter().enumerate().for_each(|(place, &pixel)| places.entry(pixel).or_default().push(place));
                 }
-                let not_finite = gpu.decide(rendered, |pixel, color| {
+                let not_finite = gpu.decide(rendered, pixels.len(), |pixel, color| {
                     places.get(&pixel).into_iter().flatten().for_each(|&place| colors[place] = color);
                 })?;
                 gpu.verifier.as_mut().map_or(Ok(()), |verifier| verifier.list(pixels, colors))?;
@@ -47,19 +47,14 @@ pub enum Filler<'a> {
 impl<'a> Filler<'a> {
     /// Where `backend` renders.
     pub fn new(backend: Backend<'a>) -> Result<Self, gpu::Error> {
-        match backend {
-            Backend::Reference => Ok(Self::Cpu),
-            Backend::Device(gpu, _) => Reconstructor::new(gpu).map(Self::Gpu),
-        }
+        backend.gpu().map_or(Ok(Self::Cpu), |gpu| Reconstructor::new(gpu).map(Self::Gpu))
     }
 
     /// Where it takes the least time for `backend`: a software device is slower at it than the CPU that it runs on. The bytes
     /// are the same.
     pub fn fastest(backend: Backend<'a>) -> Result<Self, gpu::Error> {
-        match backend {
-            Backend::Device(gpu, _) if gpu.device.info.kind == DeviceKind::Software => Ok(Self::Cpu),
-            backend => Self::new(backend),
-        }
+        let is_software = |gpu: &Gpu| gpu.device.info.kind == DeviceKind::Software;
+        if backend.gpu().is_some_and(is_software) { Ok(Self::Cpu) } else { Self::new(backend) }
     }
 
     /// Where the nearest sample of each pixel lies, packed, pixels in reading order.

@@ -56,12 +56,21 @@ const MAX_PATHS: u64 = 1 << 24;
 /// What is wanted of a renderer beside pixels.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Options {
+    /// Asks of which pixels the kernel is unsure, which it says in kernels of its own.
+    pub certified: bool,
     /// Counts shadow and reflection rays, which a device does in kernels of its own.
     pub count_rays: bool,
     /// Reads the device's own clock, if it has one.
     pub device_clock: bool,
     /// About how long a pixel takes, in ms, where that is known: the first dispatch is sized by that.
     pub pixel_ms: Option<f64>,
+}
+
+impl Options {
+    /// How the lists of spheres of such a renderer have it that `kernel` rounds.
+    fn rounding(&self, kernel: Kernel) -> Rounding {
+        if self.certified { kernel.rounding().certified() } else { kernel.rounding() }
+    }
 }
 
 /// Times of the work on the device so far.
@@ -79,6 +88,21 @@ pub struct DeviceTimes {
     pub longest_dispatch: Duration,
     /// Number of dispatches.
     pub dispatches: u64,
+}
+
+impl DeviceTimes {
+    /// Of this work and of another.
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            compile: self.compile + other.compile,
+            render: self.render + other.render,
+            on_device: self.on_device + other.on_device,
+            read_back: self.read_back + other.read_back,
+            longest_dispatch: self.longest_dispatch.max(other.longest_dispatch),
+            dispatches: self.dispatches + other.dispatches,
+        }
+    }
 }
 
 /// A scene on the device, ready to render [`Rows`] of its picture or lists of its [`Pixels`].
@@ -164,7 +188,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         options: &Options,
     ) -> Result<Self, Error> {
         let kernel = gpu.kernel(tier)?;
-        let kernel = (kernel, kernel.rounding());
+        let kernel = (kernel, options.rounding(kernel));
         Ok(gpu.device.guarded(|| Self::prepared(gpu, viewed, effects, kernel, options, drop))?.0)
     }
 
@@ -177,7 +201,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         options: &Options,
     ) -> Result<(Self, Acceleration), Error> {
         let kernel = gpu.kernel(tier)?;
-        let kernel = (kernel, kernel.rounding());
+        let kernel = (kernel, options.rounding(kernel));
         gpu.device.guarded(|| Self::prepared(gpu, viewed, effects, kernel, options, |accel| accel))
     }
 
@@ -199,6 +223,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         let (tuning, tables) = (&gpu.tuned().tuning, gpu.tables());
         let specialisation = Specialisation {
             slots: O::SLOTS,
+            certified: options.certified,
             count_rays: options.count_rays,
             dispatch_tiles: dispatch_tiles(gpu.device.info.max_uniform),
             ..Specialisation::new(viewed, effects, kernel, tuning, tables)
@@ -220,7 +245,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
             0.0
         };
         specialisation.shared_surfaces = indices.is_some();
-        let packed = Packed::new(viewed, effects, kernel, &accel, indices, tangent_margin);
+        let packed = Packed::new(viewed, effects, kernel, &accel, indices, tangent_margin, options.certified);
         if specialisation.variant().copies() && !copies_fit(&gpu.device, tables, &packed, &accel) {
             specialisation.schedule = Schedule::AtOnce;
         }

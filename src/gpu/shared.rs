@@ -3,6 +3,9 @@
 
 use crate::accel::{MAX_LARGE, REACH, WALK_SLACK};
 use crate::brightness::Scalar;
+use crate::roundings::{
+    ANGLE, AXES, LENGTH, LOCAL, LOST, NEAR, NOTHING, PLACE, PLACE_CARRIED, POWER, ROOT, ROOT_AT_EDGE, SQUARE, TERM,
+};
 use crate::sampling::{NO_SAMPLE, UNIT_WEIGHT};
 use crate::tiles::TILE;
 
@@ -30,11 +33,11 @@ pub(super) const WORKGROUP_WORDS: u32 = 6;
 pub(super) const ONE_PATH: u32 = 0;
 pub(super) const SEVERAL_PATHS: u32 = 3;
 
-/// The bits of a pixel's status byte: it is not finite; a loop has ended before its time; rounding could decide whether the primary
-/// ray touches a sphere. Those above are the number of the dispatch: whatever a dispatch has not written shows another one.
+/// The bits of a pixel's status byte: it is not finite; a loop has ended before its time; rounding could decide what it shows. Those
+/// above are the number of the dispatch: whatever a dispatch has not written shows another one.
 pub(super) const STATUS_NOT_FINITE: u8 = 1;
 pub(super) const STATUS_CUT: u8 = 2;
-pub(super) const STATUS_TANGENT: u8 = 4;
+pub(super) const STATUS_UNSURE: u8 = 4;
 /// All of them.
 pub(super) const STATUS_FLAGS: u8 = 7;
 
@@ -55,6 +58,13 @@ pub(super) fn declaration(name: &str, scalar: Scalar) -> Option<String> {
             match name {
                 $(stringify!($whole) => format!("u32 = {}u", $whole),)*
                 $(stringify!($real) => real($real),)*
+                "ROUNDOFF" => real(scalar.unit()),
+                "OTHERS" => real(Scalar::Double.unit() / scalar.unit()),
+                // The kernels of f32 have difference_f32.wgsl.
+                "PLACE" => real(match scalar {
+                    Scalar::Single => PLACE_CARRIED,
+                    Scalar::Double => PLACE,
+                }),
                 "MAX_THROUGHPUT" => real(scalar.max_throughput()),
                 _ => return None,
             }
@@ -62,8 +72,8 @@ pub(super) fn declaration(name: &str, scalar: Scalar) -> Option<String> {
     }
     Some(by_name!(
         whole: TILE TILE_PIXELS SMALL_GROUP ROW_BITS WORKGROUP_WORDS ONE_PATH SEVERAL_PATHS STATUS_NOT_FINITE STATUS_CUT
-            STATUS_TANGENT STATUS_FLAGS PROBE_FOUND PROBE_INSIDE PROBE_FINITE PROBE_FACING PROBE_BLOCKED POINT_VALUES MAX_LARGE
+            STATUS_UNSURE STATUS_FLAGS PROBE_FOUND PROBE_INSIDE PROBE_FINITE PROBE_FACING PROBE_BLOCKED POINT_VALUES MAX_LARGE
             NO_SAMPLE UNIT_WEIGHT;
-        real: REACH WALK_SLACK
+        real: REACH WALK_SLACK ANGLE AXES LENGTH LOCAL LOST NEAR NOTHING POWER ROOT ROOT_AT_EDGE SQUARE TERM
     ))
 }

@@ -235,7 +235,7 @@ pub fn study(input: &StudyInput, plan: &StudyPlan, mut hear: impl FnMut(Event)) 
     let one_ms =
         study.precision.points.iter().find(|point| point.contestant == main).map_or(0.0, |point| point.wall.median());
     let variants_ms = one_ms * (Effect::ALL.len() + 2) as f64;
-    let backend = Backend::of(gpu, selection.tier);
+    let backend = Backend::of(gpu, selection);
     study.effect_cost = effect_cost(backend, scene, settings, plan.affordable(variants_ms))?;
     hear(Event::Measured(&study));
     Ok(study)

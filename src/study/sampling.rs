@@ -106,7 +106,7 @@ impl Runner<'_> {
 /// Measures the full picture, sparse ones and foveated ones.
 pub(super) fn partial_series(input: &StudyInput, plan: &StudyPlan) -> Result<PartialSeries, Error> {
     let StudyInput { scene, settings, gpu, selection, .. } = *input;
-    let backend = Backend::of(gpu, selection.tier);
+    let backend = Backend::of(gpu, selection);
     let viewed = scene.viewed(settings);
     let effects = (input.effects)(&viewed);
     let size = (scene.width, scene.height);

@@ -209,7 +209,7 @@ impl<'g> SessionRenderer<'g> {
         let mut map = None;
         // Before anything is measured a coarse picture is there first.
         if step > 1 && self.costs.measured {
-            let backend = Backend::of(self.gpu, selection.tier);
+            let backend = Backend::of(self.gpu, &selection);
             map = self.maps.choose(backend, &self.session.preview(), size, [limit, self.costs.sample_ms])?;
         }
         if map.is_some() {

@@ -150,7 +150,7 @@ fn measure(gpu: Option<&Gpu>, families: &[&str], seconds: f64) -> Bench {
         settings: &settings,
         resolution: Some((32, 18)),
         effects: &Effects::of,
-        selection: &|viewed, effects| Selection::of(viewed, effects, precision::Request(None), &Tier::ALL),
+        selection: &|viewed, effects| Selection::of(viewed, effects, precision::Request::Auto, &Tier::ALL),
     };
     let families = families.iter().map(|name| family(name)).collect();
     let plan = BenchPlan { families, max_spheres: 100, runs: 2, seconds, cpu: true };

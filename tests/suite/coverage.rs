@@ -89,7 +89,7 @@ fn covered_pictures_differ_from_double_in_one_pixel_of_ten_thousand() {
 fn auto_says_what_takes_it_to_another_tier() {
     let settings = Settings::exact();
     let select = |scene: &trueray::scene::Scene| {
-        Selection::of(&scene.viewed(&settings), &Effects::of(&scene.viewed(&settings)), Request(None), &Tier::ALL)
+        Selection::of(&scene.viewed(&settings), &Effects::of(&scene.viewed(&settings)), Request::Auto, &Tier::ALL)
     };
     let kinds = kinds();
     let named = |name: &str| select(&kinds.iter().find(|kind| kind.name == name).unwrap().scene(SEED));

@@ -43,7 +43,7 @@ fn picture<T: Real>(case: &Case) -> Picture {
 /// What `auto` takes on software devices.
 fn tier(case: &Case) -> Tier {
     let ladder = [Tier::Fast, Tier::Double, Tier::Robust];
-    Selection::of(&case.scene.viewed(&case.settings), &case.effects, precision::Request(None), &ladder).tier
+    Selection::of(&case.scene.viewed(&case.settings), &case.effects, precision::Request::Auto, &ladder).tier
 }
 
 /// The unclamped colours of the reference in `T`, by the margins of `f32`.
@@ -234,6 +234,7 @@ impl Real for Loose {
     const ONE: Self = Self(1.0);
     const FAR: Self = Self(f32::FAR);
     const MAX_THROUGHPUT: Self = Self(f32::MAX_THROUGHPUT);
+    const UNIT: f64 = f32::UNIT;
     const ROUNDING: Rounding = f32::ROUNDING;
 
     fn from_f64(x: f64) -> Self {

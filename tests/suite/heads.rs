@@ -122,6 +122,7 @@ const PLAIN: Variant = Variant {
     refraction: None,
     slots: Slots::Tiles,
     schedule: Schedule::InPlace,
+    certified: false,
     dispatch_tiles: 8,
 };
 
@@ -139,8 +140,19 @@ fn modules() -> Vec<Module> {
     ];
     let pictures = kernels.iter().flat_map(|&kernel| {
         ways.map(|(secondary, tables, slots, schedule, refraction)| {
-            let (storage, samples) = (Storage::Tables(tables), slots == Slots::List);
-            Module::render(&Variant { kernel, storage, secondary, samples, refraction, slots, schedule, ..PLAIN })
+            let (storage, samples, certified) =
+                (Storage::Tables(tables), slots == Slots::List, schedule == Schedule::InPlace || refraction.is_some());
+            Module::render(&Variant {
+                kernel,
+                storage,
+                secondary,
+                samples,
+                refraction,
+                slots,
+                schedule,
+                certified,
+                ..PLAIN
+            })
         })
     });
     let others = [Module::between_bounces(), Module::flood(), Module::selftest()];

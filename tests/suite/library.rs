@@ -35,6 +35,8 @@ fn every_device_shows_what_the_reference_explains() {
     }
     let double = Renderer::new().unwrap().with_precision(Tier::Double).with_verification(Verify::All);
     assert!(double.render(&scene, &settings).unwrap() == expected);
+    let certified = Renderer::new().unwrap().with_certification();
+    assert!(certified.render(&scene, &settings).unwrap() == expected);
 }
 
 #[test]

@@ -370,7 +370,7 @@ fn negative_mirrors_alternate_between_white_and_black() {
             assert_eq!(not_finite, 0);
             assert!(expected.rgb().iter().all(|&l| l == level), "{kr}, depth {max_depth}: {level}");
             let Some(gpu) = &shared else { continue };
-            let selection = Selection::of(&scene.viewed(&settings), &effects, precision::Request(None), gpu.ladder());
+            let selection = Selection::of(&scene.viewed(&settings), &effects, precision::Request::Auto, gpu.ladder());
             let kernel = gpu.kernel(selection.tier).unwrap();
             let Some(picture) = device(gpu, kernel, &scene, &settings, kernel.rounding()) else {
                 // Pairs of f32 have no greater range than one.
@@ -418,7 +418,7 @@ fn colours_beyond_single_precision_take_double() {
         assert_eq!(limits::problem(&scene.viewed(&settings), &effects), None);
         let (expected, not_finite) = cpu_picture::<f64>(&scene, &settings, &effects);
         assert_eq!(not_finite, 0);
-        let selection = Selection::of(&scene.viewed(&settings), &effects, precision::Request(None), &Tier::ALL);
+        let selection = Selection::of(&scene.viewed(&settings), &effects, precision::Request::Auto, &Tier::ALL);
         assert_eq!((selection.tier, selection.covered), (Tier::Double, true), "{text}");
         assert!(selection.reason.contains("brightness"), "{}", selection.reason);
         let Some(gpu) = &shared else { continue };
@@ -464,7 +464,7 @@ fn strong_refraction_takes_double() {
     for (eta, tier) in [("1.5", Tier::Fast), ("0.75", Tier::Fast), ("300", Tier::Double), ("0.001", Tier::Double)] {
         let scene = scene_of(&format!("SPHERE a 0 0 -5 1 1 1 1 1 1 0.2 0.2 0 0 1 0.8 {eta}\nAMBIENT 1 1 1"));
         let viewed = scene.viewed(&Settings::classic());
-        let request = precision::Request(None);
+        let request = precision::Request::Auto;
         let selection = Selection::of(&viewed, &Effects::of(&viewed), request, &Tier::ALL);
         assert_eq!(selection.tier, tier, "{eta}: {}", selection.reason);
     }

@@ -8,7 +8,9 @@
 #![allow(missing_docs, reason = "test names say what they test")]
 
 mod bench;
+mod bound;
 mod camera;
+mod certified;
 mod claims;
 mod cli;
 mod compare;

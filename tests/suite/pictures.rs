@@ -177,7 +177,7 @@ fn auto_picks_a_tier_that_covers_the_scene() {
     let settings = Settings::exact();
     for file in scene_files(&["hard"]) {
         let case = Case::of(&file, &settings);
-        let (viewed, request) = (case.scene.viewed(&settings), precision::Request(None));
+        let (viewed, request) = (case.scene.viewed(&settings), precision::Request::Auto);
         let tier = Selection::of(&viewed, &case.effects, request, gpu.ladder()).tier;
         if gpu.kernel(tier).is_ok() {
             let (picture, _) = gpu_picture(&gpu, tier, &case.scene, &settings, &case.effects);
@@ -188,7 +188,7 @@ fn auto_picks_a_tier_that_covers_the_scene() {
         scene_of("SPHERE a 0 0 -5 1 1 1 1 1 1 1 1 1 0 50\nSPHERE b 1 0 -4 1 2 1 1 1 1 1 1 1 1 50\nLIGHT l 5 5 5 1 1 1");
     let effects = Effects::of(&plain.viewed(&settings));
     assert_eq!(
-        Selection::of(&plain.viewed(&settings), &effects, precision::Request(None), gpu.ladder()).tier,
+        Selection::of(&plain.viewed(&settings), &effects, precision::Request::Auto, gpu.ladder()).tier,
         Tier::Fast
     );
 }
@@ -201,13 +201,13 @@ fn kernels_are_parsed_ahead_for_the_picture_that_follows() {
     let (settings, software) = (Settings::classic(), Tuning::of(Class::Software));
     let is_expected = own.tables() == Tables::Stored && own.tuned().tuning == software;
     let ahead_of = |scene: &trueray::scene::Scene| {
-        Ahead::of(&scene.viewed(&settings), &Effects::of(&scene.viewed(&settings)), precision::Request(None))
+        Ahead::of(&scene.viewed(&settings), &Effects::of(&scene.viewed(&settings)), precision::Request::Auto)
     };
     let glass = scene(&root().join("scenes/refraction/glass-ball.txt"));
     for file in scene_files(&["basic"]) {
         let scene = scene(&file);
         let effects = Effects::of(&scene.viewed(&settings));
-        let tier = Selection::of(&scene.viewed(&settings), &effects, precision::Request(None), own.ladder()).tier;
+        let tier = Selection::of(&scene.viewed(&settings), &effects, precision::Request::Auto, own.ladder()).tier;
         let (expected, _) = gpu_picture(&own, tier, &scene, &settings, &effects);
         for ahead in [ahead_of(&scene), ahead_of(&glass)].into_iter().flatten() {
             let variant = ahead.variant();

@@ -186,6 +186,7 @@ fn sampled_pixels_are_those_of_the_full_picture() {
     let side = |samples| Settings { samples_per_side: samples, ..Settings::exact() };
     let mut backends = vec![Backend::Reference];
     backends.extend(gpu.as_deref().into_iter().flat_map(|gpu| Tier::ALL.map(|tier| Backend::Device(gpu, tier))));
+    backends.extend(gpu.as_deref().map(|gpu| Backend::Certified(gpu, Tier::Fast)));
     for (scene, settings) in [
         (mirrors(), Settings::classic()),
         (mirrors(), side(3)),

@@ -4,6 +4,7 @@ use std::collections::HashSet;
 use std::num::NonZeroU32;
 
 use trueray::accel::{Acceleration, Lists};
+use trueray::camera::Camera;
 use trueray::effects::{Effect, EffectSet, Effects, Request};
 use trueray::gpu::layout::{double, single};
 use trueray::gpu::{
@@ -35,7 +36,9 @@ fn kinds() -> impl Iterator<Item = Variant> {
         (Secondary::Grid, Tables::Buffers, Schedule::InPlace),
     ];
     kernels.flat_map(move |kernel| {
-        ways.map(|(secondary, tables, schedule)| Variant {
+        let certified = [false, true].into_iter().filter(move |certified| !(*certified && kernel.carries_low()));
+        let each = certified.flat_map(move |certified| ways.map(move |way| (certified, way)));
+        each.map(move |(certified, (secondary, tables, schedule))| Variant {
             kernel,
             storage: Storage::Tables(tables),
             secondary,
@@ -43,6 +46,7 @@ fn kinds() -> impl Iterator<Item = Variant> {
             refraction: None,
             slots: Slots::Tiles,
             schedule,
+            certified,
             dispatch_tiles: 8,
         })
     })
@@ -50,7 +54,7 @@ fn kinds() -> impl Iterator<Item = Variant> {
 
 /// What a pipeline of this variant may be specialised for.
 fn specialisation(variant: &Variant, effects: EffectSet, flags: usize) -> Specialisation {
-    let Variant { kernel, storage, secondary, refraction, slots, schedule, .. } = *variant;
+    let Variant { kernel, storage, secondary, refraction, slots, schedule, certified, .. } = *variant;
     let [shared_surfaces, blinn, count_rays] = [1, 2, 4].map(|bit| flags & bit != 0);
     let samples = if variant.samples { 2 } else { 1 };
     Specialisation {
@@ -66,6 +70,7 @@ fn specialisation(variant: &Variant, effects: EffectSet, flags: usize) -> Specia
         schedule,
         samples,
         slots,
+        certified,
         count_rays,
         workgroup: 64,
         dispatch_tiles: 8,
@@ -599,6 +604,16 @@ fn the_device_reads_every_field_where_the_host_wrote_it() {
             0.25_f32.next_up().to_bits(),
             255.0_f32.to_bits(),
         ]);
+        let unit = if kernel.is_double() { f64::EPSILON / 2.0 } else { f64::from(f32::EPSILON) / 2.0 };
+        expected[0].push(single(Camera::new(&scene.viewed(&settings)).direction_error(unit)));
+        expected[0].extend(accel.middle.to_array().map(single));
+        expected[0].extend([accel.extent, accel.allowance, accel.light_allowance].map(single));
+        // Levels as one number, red in the low byte.
+        let levels = |[red, green, blue]: [u8; 3]| single(f64::from(u32::from_le_bytes([red, green, blue, 0])));
+        expected[0].push(levels(settings.quantize.levels(scene.background)));
+        for (sphere, of) in scene.spheres.iter().zip(1..) {
+            expected[of].push(levels(settings.quantize.levels(scene.ambient * sphere.color * sphere.ka)));
+        }
         assert_eq!(
             echo_layout(&gpu, &scene.viewed(&settings), &effects, kernel).unwrap(),
             expected.concat(),

@@ -59,7 +59,7 @@ fn tiny() -> Scene {
 
 fn measure(scene: &Scene, gpu: Option<&Gpu>, settings: &Settings) -> Study {
     let viewed = scene.viewed(settings);
-    let selection = Selection::of(&viewed, &Effects::of(&viewed), Request(None), &Tier::ALL);
+    let selection = Selection::of(&viewed, &Effects::of(&viewed), Request::Auto, &Tier::ALL);
     let input =
         StudyInput { name: "tiny, <scene>", scene, settings, effects: &Effects::of, gpu, selection: &selection };
     study(&input, &StudyPlan { runs: 1, seconds: 0.0, depths: Vec::new(), sides: vec![1, 2] }, |_| ()).unwrap()

@@ -14,7 +14,7 @@ use trueray::tuning::{Class, KNOBS, Tuning};
 use crate::support::{driver_cache, gpu, scene, scene_files};
 
 /// Each number at its least, and at its greatest; and some in between.
-fn tunings() -> [Tuning; 5] {
+pub(crate) fn tunings() -> [Tuning; 5] {
     let class = Tuning::of(Class::Software);
     let ends = [0, 1].map(|end| {
         let mut tuning = class;
@@ -44,7 +44,7 @@ fn render(gpu: &Gpu, tier: Tier, scene: &Scene, settings: &Settings) -> Vec<u8> 
 }
 
 /// Scenes of every kind of kernel, each with its settings.
-fn cases() -> Vec<(String, Scene, Settings)> {
+pub(crate) fn cases() -> Vec<(String, Scene, Settings)> {
     let small = |mut scene: Scene| {
         (scene.width, scene.height) = (70, 37);
         scene

@@ -5,6 +5,10 @@ use std::path::{Path, PathBuf};
 /// Files of src/cpu with the functions that have a twin in some shader; `=` where the twin's name is another, since the step has
 /// a part there that the other has not.
 const TWINS: &str = "
+    bound: search=begin_search tested=note_other nearest=end_search crossed=note_crossed blocked=end_shadow
+    bound: surface=note_surface lit=note_light shaded=note_lit background=note_background reflected=note_reflected
+    bound: refracted=keep_cone resumed=go_on_with_cone width=bound_width reach=reach_of reach_aside is_edge near=near_of
+    bound: push=add_root add_term=add_bound exit_error normal_error power_error has_sure_levels
     dd: fast_two_sum power_of_two two_product two_sum
     fill: color_of distance_squared index jump place smooth=filled
     intersect: accepted_root any_hit approach blocks exit_of is_behind nearer_of nearest_secondary nearest_seen roots

@@ -24,14 +24,15 @@ macro_rules! files {
 }
 
 files! {
-    "barrier_bits" "barrier_none" "batch_plain" "batch_robust" "body_plain" "body_robust" "bounce" "counters"
+    "barrier_bits" "barrier_none" "batch_plain" "batch_robust" "body_plain" "body_robust" "bounce" "bound_cone" "bound_none"
+    "counters"
     "difference_f32" "difference_f64" "distance_pair" "distance_real" "echo" "effects" "eft" "elementary_f32"
     "elementary_f64" "entry_copied" "entry_shared" "fill" "filled_nearest" "filled_smooth" "film_pixels" "film_samples"
     "flood" "grid" "intersect" "jump" "kernel_plain" "kernel_robust" "kernel_schoolbook" "path_in_place" "path_kept"
     "path_tree" "probe" "quantize" "queue" "ray_plain" "ray_robust" "real_f32" "real_f64" "reflect" "refract" "resolve"
     "roots_pair" "roots_single" "scene_ranges" "scene_tables" "search_all" "search_lists" "secondary_both" "secondary_grid"
     "secondary_large" "selftest" "shade" "slots_list" "slots_tiles" "tables_buffers" "tables_textures" "texels"
-    "texture_sampled" "texture_stored" "trace" "types" "vectors_f32" "vectors_f64" "walk_at_once" "walk_in_turn"
+    "texture_sampled" "texture_stored" "trace" "types" "vectors_f32" "vectors_f64" "waiting_cones" "waiting_none" "walk_at_once" "walk_in_turn"
 }
 
 /// One file of `shaders/`, or what the host declares.
@@ -117,6 +118,8 @@ impl Variant {
                 Kernel::Tier(Tier::Robust) | Kernel::Pairs | Kernel::NoBarrier => "robust",
                 Kernel::Schoolbook => "schoolbook",
             },
+            "bound" => either(self.certified && !kernel.carries_low(), "cone", "none"),
+            "waiting" => either(self.certified && !kernel.carries_low(), "cones", "none"),
             "scene" => either(storage == Storage::Ranges, "ranges", "tables"),
             "search" => either(storage == Storage::Ranges, "all", "lists"),
             "tables" => either(storage == Storage::Tables(Tables::Buffers), "buffers", "textures"),

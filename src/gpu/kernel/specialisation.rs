@@ -39,6 +39,8 @@ pub struct Specialisation {
     pub samples: u32,
     /// Which pixels a dispatch renders.
     pub slots: Slots,
+    /// Whether pixels say where rounding could decide what they show.
+    pub certified: bool,
     /// Whether each pixel also says how many rays it took.
     pub count_rays: bool,
     /// Invocations of a workgroup of the kernels that are not over tiles.
@@ -65,6 +67,7 @@ impl Specialisation {
             schedule: Schedule::InPlace,
             samples: settings.samples_per_side,
             slots: Slots::Tiles,
+            certified: false,
             count_rays: false,
             workgroup: tuning.workgroup,
             dispatch_tiles: dispatch_tiles(UNIFORM),
@@ -94,8 +97,18 @@ impl Specialisation {
 
     /// What decides the text of its kernels.
     pub(crate) fn variant(&self) -> Variant {
-        let Self { kernel, storage, secondary, refraction, slots, schedule, dispatch_tiles, .. } = *self;
-        Variant { kernel, storage, secondary, samples: self.samples > 1, refraction, slots, schedule, dispatch_tiles }
+        let Self { kernel, storage, secondary, refraction, slots, schedule, certified, dispatch_tiles, .. } = *self;
+        Variant {
+            kernel,
+            storage,
+            secondary,
+            samples: self.samples > 1,
+            refraction,
+            slots,
+            schedule,
+            certified,
+            dispatch_tiles,
+        }
     }
 
     /// Whether the intersection reads second halves of shapes.
@@ -105,7 +118,7 @@ impl Specialisation {
 
     /// Vectors that keep a path: as `shaders/path_kept.wgsl` has them.
     pub(crate) fn path_vectors(&self) -> u64 {
-        4 + u64::from(self.kernel.carries_low())
+        4 + u64::from(self.kernel.carries_low() || self.certified)
     }
 
     /// The constants by name; booleans are 0 and 1.
@@ -123,6 +136,7 @@ impl Specialisation {
             ("SAMPLES", f64::from(self.samples)),
             ("COUNT_RAYS", f64::from(self.count_rays)),
             ("TANGENTS", f64::from(self.kernel.tells_tangents())),
+            ("CERTIFIED", f64::from(self.certified)),
             ("GROUP", f64::from(self.workgroup)),
         ];
         if self.keeps_paths() {
@@ -138,7 +152,7 @@ impl Specialisation {
                 constants.push(("SPHERE_COUNT", f64::from(self.sphere_count)));
             }
             constants.push(("LIGHT_COUNT", f64::from(self.lights)));
-            constants.push(("MATERIAL", material_vectors(self.effects) as f64));
+            constants.push(("MATERIAL", material_vectors(self.effects, self.certified) as f64));
             constants.push(("SHAPE_ENDS", f64::from(self.reads_shape_ends())));
         }
         constants
@@ -181,7 +195,8 @@ impl Specialisation {
     }
 }
 
-/// Vectors of a material, as `shaders/scene_tables.wgsl` has it: all three, or all but the way out of object space.
-pub(crate) fn material_vectors(effects: EffectSet) -> usize {
-    if effects.has(Effect::Ellipsoids) { 3 } else { 2 }
+/// Vectors of a material, as `shaders/scene_tables.wgsl` has it: all three, or all but the way out of object space with the levels of
+/// ambient light.
+pub(crate) fn material_vectors(effects: EffectSet, certified: bool) -> usize {
+    if certified || effects.has(Effect::Ellipsoids) { 3 } else { 2 }
 }

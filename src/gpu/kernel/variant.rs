@@ -125,6 +125,8 @@ pub struct Variant {
     pub slots: Slots,
     /// How the bounces of paths are scheduled, where nothing refracts.
     pub schedule: Schedule,
+    /// Whether samples say where rounding could decide what they show.
+    pub certified: bool,
     /// Tiles of a dispatch at the most.
     pub dispatch_tiles: u32,
 }
@@ -140,6 +142,7 @@ impl Variant {
             refraction: None,
             slots: Slots::Tiles,
             schedule: Schedule::InPlace,
+            certified: false,
             dispatch_tiles: 0,
         }
     }

@@ -6,7 +6,7 @@ use super::rendered::Rendered;
 use super::tiles::TILE_PIXELS;
 use crate::gpu::device::error::Error;
 use crate::gpu::device::open::Device;
-use crate::gpu::shared::{STATUS_CUT, STATUS_FLAGS, STATUS_NOT_FINITE, STATUS_TANGENT};
+use crate::gpu::shared::{STATUS_CUT, STATUS_FLAGS, STATUS_NOT_FINITE, STATUS_UNSURE};
 use crate::tiles::TILE;
 
 /// How many pixels say what of themselves.
@@ -40,8 +40,8 @@ impl Statuses {
         }
         if status & STATUS_CUT != 0 {
             self.rendered.cut.push(pixel);
-        } else if status & STATUS_TANGENT != 0 {
-            self.rendered.tangents.push(pixel);
+        } else if status & STATUS_UNSURE != 0 {
+            self.rendered.unsure.push(pixel);
         } else {
             self.rendered.not_finite += u64::from(status & STATUS_NOT_FINITE != 0);
         }

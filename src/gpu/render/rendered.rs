@@ -6,16 +6,19 @@
 pub struct Rendered {
     /// How many are not finite, those below left out.
     pub not_finite: u64,
-    /// Pixels with a ray that passes so near to touching a sphere that rounding decides whether it does: each shows either answer.
-    pub tangents: Vec<[u32; 2]>,
+    /// Pixels of which rounding could decide what they show. At tiers that tell tangents, these are pixels with a primary ray that
+    /// passes so near to touching a sphere that rounding decides whether it does; of a certified picture, all of which the kernel's
+    /// bound of error does not say that they are right.
+    pub unsure: Vec<[u32; 2]>,
     /// Pixels that need more turns of a loop than the device has for them, some 65,535: what they show is wrong.
     pub cut: Vec<[u32; 2]>,
 }
 
 impl Rendered {
-    pub(super) fn add(&mut self, other: Self) {
+    /// What others say, too.
+    pub(crate) fn add(&mut self, other: Self) {
         self.not_finite += other.not_finite;
-        self.tangents.extend(other.tangents);
+        self.unsure.extend(other.unsure);
         self.cut.extend(other.cut);
     }
 }

@@ -12,7 +12,7 @@ use crate::misuse::{Misuse, check_picture};
 use crate::viewed::ViewedScene;
 
 /// Values before the spheres, of each sphere, of each light, and after the lights.
-const COUNTS: [usize; 4] = [31, 19, 6, 6];
+const COUNTS: [usize; 4] = [39, 20, 6, 6];
 
 /// Packs `viewed` and lets the device write back every field in the order of `shaders/echo.wgsl`: numbers as the bits of
 /// their nearest `f32`.
@@ -27,7 +27,7 @@ pub fn echo_layout(gpu: &Gpu, viewed: &ViewedScene, effects: &Effects, kernel: K
         return Err(Misuse::Picture("only two spheres with all effects are echoed".into()).into());
     }
     let accel = Acceleration::new(viewed, effects.set, kernel.rounding());
-    let packed = Packed::new(viewed, effects, kernel, &accel, None, 0.25);
+    let packed = Packed::new(viewed, effects, kernel, &accel, None, 0.25, true);
     let [head, sphere, light, tail] = COUNTS;
     let job = Job {
         what: "echoing the layout",

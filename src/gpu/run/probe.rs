@@ -20,7 +20,7 @@ use crate::gpu::kernel::specialisation::Specialisation;
 use crate::gpu::kernel::spirv::ParsedModule;
 use crate::gpu::kernel::variant::{Kernel, Schedule, Secondary, Slots, Storage};
 use crate::gpu::shared;
-use crate::gpu::table::layout::{Layout, ListValues, ParamValues, ShapeValues, double, single};
+use crate::gpu::table::layout::{ConeValues, Layout, ListValues, ParamValues, ShapeValues, double, single};
 use crate::gpu::table::pack::{bytes, low_light, low_shape, shape_value};
 use crate::scene::{Light, Sphere};
 
@@ -294,6 +294,7 @@ impl<'a> Prober<'a> {
             secondary: Secondary::Large,
             sphere_count: 0,
             schedule: Schedule::InPlace,
+            certified: false,
             count_rays: false,
             workgroup: 64,
             samples: 1,
@@ -381,6 +382,7 @@ fn params<L: Layout>() -> Vec<u8> {
         light_count: 0,
         max_depth: 0,
         tangent_margin: 0.0,
+        cones: ConeValues::default(),
     })])
 }
 
@@ -423,7 +425,7 @@ impl Chunk<'_> {
         let shapes = ellipsoids.iter().zip(indices).map(|(e, index)| shape_value(e, index, self.ellipsoids));
         let shapes: Vec<_> = shapes.collect();
         let material =
-            |(s, e): (&Sphere, &Ellipsoid)| L::material(s, if self.ellipsoids { e.scale } else { DVec3::ONE });
+            |(s, e): (&Sphere, &Ellipsoid)| L::material(s, if self.ellipsoids { e.scale } else { DVec3::ONE }, 0.0);
         let numbers = |ray: &ProbeRay| {
             let (o, d) = (ray.origin, ray.direction);
             [o.x, o.y, o.z, d.x, d.y, d.z]

@@ -43,6 +43,19 @@ pub struct ParamValues {
     pub light_count: u32,
     pub max_depth: u32,
     pub tangent_margin: f64,
+    pub cones: ConeValues,
+}
+
+/// What certified pictures need.
+#[derive(Debug, Clone, Copy, Default)]
+#[allow(missing_docs, reason = "the fields are those of Params")]
+pub struct ConeValues {
+    pub direction_error: f64,
+    pub middle: DVec3,
+    pub extent: f64,
+    pub allowance: f64,
+    pub light_allowance: f64,
+    pub background_levels: f64,
 }
 
 /// Where the lists of spheres are.
@@ -80,13 +93,16 @@ pub trait Layout {
     type Glass: Pod;
     /// The scalar.
     type Real: Pod;
+    /// Its unit roundoff.
+    const UNIT: f64;
     /// The nearest scalar.
     fn real(x: f64) -> Self::Real;
     /// What rounding to the scalar takes from `x`.
     fn residual(x: f64) -> f64;
     fn params(values: &ParamValues) -> Self::Params;
     fn shape(values: &ShapeValues) -> Self::Shape;
-    fn material(sphere: &scene::Sphere, scale: DVec3) -> Self::Material;
+    /// `ambient` are the levels of its ambient light, as a number.
+    fn material(sphere: &scene::Sphere, scale: DVec3, ambient: f64) -> Self::Material;
     fn light(light: &scene::Light) -> Self::Light;
     /// `base` is where in the cells those of the light begin.
     fn face(face: &accel::Face, base: u32) -> Self::Face;
@@ -95,7 +111,7 @@ pub trait Layout {
 
 /// Declares the structs for one scalar, with the numbers of `u32` that pad each.
 macro_rules! layout {
-    ($(#[$doc:meta])* $module:ident, $real:ty, params $params0:literal $params1:literal, shape $shape:literal, material $material:literal, light $light:literal, face $face:literal) => {
+    ($(#[$doc:meta])* $module:ident, $real:ty, params $params0:literal $params1:literal $params2:literal, shape $shape:literal, light $light:literal, face $face:literal) => {
         $(#[$doc])*
         pub mod $module {
             use bytemuck::{Pod, Zeroable};
@@ -151,8 +167,22 @@ macro_rules! layout {
                     tangent_margin: f32,
                     /// What a colour is multiplied by to be a level.
                     quantize_scale: $real,
-                    /// To the size that WGSL gives the struct.
+                    /// Error of the direction of a primary ray, as an angle.
+                    direction_error: $real,
+                    /// To the alignment that WGSL gives the next vector.
                     padding1: [u32; $params1],
+                    /// Middle of a ball around all spheres.
+                    middle: [$real; 3],
+                    /// Its radius.
+                    extent: $real,
+                    /// How far a ray that leaves a surface may lie beside where lists take it.
+                    allowance: $real,
+                    /// Likewise one to a light.
+                    light_allowance: $real,
+                    /// Levels of the background, as a number.
+                    background_levels: $real,
+                    /// To the size that WGSL gives the struct.
+                    padding2: [u32; $params2],
                 }
             }
 
@@ -187,8 +217,8 @@ macro_rules! layout {
                     n: $real,
                     /// Object to world space.
                     scale: [$real; 3],
-                    /// To the size that WGSL gives the struct.
-                    padding: [u32; $material],
+                    /// Levels of its ambient light, as a number.
+                    ambient_levels: $real,
                 }
             }
 
@@ -248,6 +278,7 @@ macro_rules! layout {
                 type Face = Face;
                 type Glass = Glass;
                 type Real = $real;
+                const UNIT: f64 = <$real>::EPSILON as f64 / 2.0;
 
                 fn real(x: f64) -> $real {
                     x as $real
@@ -280,6 +311,12 @@ macro_rules! layout {
                         max_depth: values.max_depth,
                         // Not below the margin.
                         tangent_margin: (values.tangent_margin as f32).next_up(),
+                        direction_error: Self::real(values.cones.direction_error),
+                        middle: vector(values.cones.middle),
+                        extent: Self::real(values.cones.extent),
+                        allowance: Self::real(values.cones.allowance),
+                        light_allowance: Self::real(values.cones.light_allowance),
+                        background_levels: Self::real(values.cones.background_levels),
                         ..Params::zeroed()
                     }
                 }
@@ -293,7 +330,7 @@ macro_rules! layout {
                     }
                 }
 
-                fn material(sphere: &scene::Sphere, scale: DVec3) -> Material {
+                fn material(sphere: &scene::Sphere, scale: DVec3, ambient: f64) -> Material {
                     Material {
                         color: vector(sphere.color),
                         ka: Self::real(sphere.ka),
@@ -303,7 +340,7 @@ macro_rules! layout {
                         // 0 is another exponent than any above, all of which below this give 1.
                         n: Self::real(if sphere.n > 0.0 { sphere.n.max(f64::from(f32::MIN_POSITIVE)) } else { 0.0 }),
                         scale: vector(scale),
-                        ..Material::zeroed()
+                        ambient_levels: Self::real(ambient),
                     }
                 }
 
@@ -343,21 +380,21 @@ macro_rules! layout {
 
 layout!(
     /// The structs of the `f32` kernels.
-    single, f32, params 0 1, shape 0, material 1, light 1, face 1
+    single, f32, params 0 0 1, shape 0, light 1, face 1
 );
 layout!(
     /// The structs of the `f64` kernels.
-    double, f64, params 1 4, shape 1, material 2, light 2, face 2
+    double, f64, params 1 2 2, shape 1, light 2, face 2
 );
 
 const _: () = {
-    assert!(size_of::<single::Params>() == 128 && std::mem::offset_of!(single::Params, window_low) == 96);
+    assert!(size_of::<single::Params>() == 160 && std::mem::offset_of!(single::Params, window_low) == 96);
     assert!(size_of::<single::Shape>() == 32 && std::mem::offset_of!(single::Shape, inv_scale) == 16);
     assert!(size_of::<single::Material>() == 48 && std::mem::offset_of!(single::Material, scale) == 32);
     assert!(size_of::<single::Light>() == 32 && std::mem::offset_of!(single::Light, intensity) == 16);
     assert!(size_of::<single::Face>() == 32 && size_of::<double::Face>() == 48);
     assert!(size_of::<single::Glass>() == 12 && size_of::<double::Glass>() == 24);
-    assert!(size_of::<double::Params>() == 192 && std::mem::offset_of!(double::Params, window_low) == 144);
+    assert!(size_of::<double::Params>() == 256 && std::mem::offset_of!(double::Params, window_low) == 144);
     assert!(size_of::<double::Shape>() == 64 && std::mem::offset_of!(double::Shape, inv_scale) == 32);
     assert!(size_of::<double::Material>() == 96 && std::mem::offset_of!(double::Material, scale) == 64);
     assert!(size_of::<double::Light>() == 64 && std::mem::offset_of!(double::Light, intensity) == 32);

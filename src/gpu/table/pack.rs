@@ -5,7 +5,7 @@ use std::sync::Arc;
 use bytemuck::Pod;
 use glam::DVec3;
 
-use super::layout::{Layout, ListValues, ParamValues, ShapeValues, double, single};
+use super::layout::{ConeValues, Layout, ListValues, ParamValues, ShapeValues, double, single};
 use crate::accel::{Acceleration, Lists};
 use crate::camera::Camera;
 use crate::effects::{Effect, Effects};
@@ -47,11 +47,12 @@ impl<'a> Packed<'a> {
         accel: &Acceleration,
         indices: Option<Vec<u32>>,
         tangent_margin: f64,
+        certified: bool,
     ) -> Self {
         if kernel.is_double() {
-            pack::<double::Layout>(viewed, effects, false, accel, indices, tangent_margin)
+            pack::<double::Layout>(viewed, effects, false, accel, indices, tangent_margin, certified)
         } else {
-            pack::<single::Layout>(viewed, effects, kernel.carries_low(), accel, indices, tangent_margin)
+            pack::<single::Layout>(viewed, effects, kernel.carries_low(), accel, indices, tangent_margin, certified)
         }
     }
 }
@@ -63,6 +64,7 @@ fn pack<'a, L: Layout + 'a>(
     accel: &Acceleration,
     indices: Option<Vec<u32>>,
     tangent_margin: f64,
+    certified: bool,
 ) -> Packed<'a> {
     let on = |effect| effects.set.has(effect);
     let (scene, settings, camera) = (viewed.scene(), viewed.settings(), Camera::new(viewed));
@@ -81,6 +83,10 @@ fn pack<'a, L: Layout + 'a>(
         Some(i) => residual::<L>(place(i)),
     };
     let bases = list_bases(accel);
+    let levels = move |color| {
+        let [red, green, blue] = settings.quantize.levels(color).map(f64::from);
+        red + 256.0 * (green + 256.0 * blue)
+    };
     let params = ParamValues {
         background: scene.background,
         ambient: scene.ambient,
@@ -95,12 +101,22 @@ fn pack<'a, L: Layout + 'a>(
         light_count: scene.lights.len() as u32,
         max_depth: effects.depth,
         tangent_margin,
+        cones: ConeValues {
+            direction_error: camera.direction_error(L::UNIT),
+            middle: accel.middle,
+            extent: accel.extent,
+            allowance: accel.allowance,
+            light_allowance: accel.light_allowance,
+            background_levels: levels(scene.background),
+        },
     };
+    let has_ambient = on(Effect::Ambient);
     let material = move |i: usize| {
         let sphere = &scene.spheres[i];
         // Without the effect the kernel leaves out the way into object space.
         let scale = if true_axes { ellipsoid(sphere, true_axes).scale } else { DVec3::ONE };
-        L::material(sphere, scale)
+        let ambient = if has_ambient { sphere.ka } else { 0.0 };
+        L::material(sphere, scale, levels(scene.ambient * sphere.color * ambient))
     };
     let faces = accel.lights.faces.iter().zip(bases.iter().skip(1));
     let faces: Vec<_> = faces.flat_map(|(faces, &base)| faces.map(|face| (face, base))).collect();
@@ -115,7 +131,7 @@ fn pack<'a, L: Layout + 'a>(
             })
         })
     };
-    let material_size = size_of::<L::Material>() / 3 * material_vectors(effects.set);
+    let material_size = size_of::<L::Material>() / 3 * material_vectors(effects.set, certified);
     Packed {
         params: Contents::new(1, move |_| L::params(&params)),
         shapes: halves(false),

@@ -70,7 +70,7 @@ impl SessionRenderer<'_> {
         let (Some(mut measurement), Some(job)) = (self.measurement.take(), &self.job) else { return Ok(()) };
         let step = self.costs.step(job.size, 3.0 * FRAME_MS);
         let effects = measurement.variant(&job.effects);
-        let backend = Backend::of(self.gpu, job.selection.tier);
+        let backend = Backend::of(self.gpu, &job.selection);
         let how = (&job.settings, &effects);
         let (mut engine, (width, height)): (Engine, _) =
             coarse_engine(backend, context.scene, how, job.size, step, &Options::default())?;

@@ -52,9 +52,9 @@ impl<'g> SessionRenderer<'g> {
             return Ok(());
         }
         let ladder = self.gpu.map_or(&Tier::ALL[..], Gpu::ladder);
-        let tier = Selection::of(&viewed, &effects, view.precision, ladder).tier;
+        let selection = Selection::of(&viewed, &effects, view.precision, ladder);
         drop(viewed);
-        let backend = Backend::of(self.gpu, tier);
+        let backend = Backend::of(self.gpu, &selection);
         if self.canvas.size() != size {
             self.canvas = Canvas::new(size);
         }

@@ -71,8 +71,8 @@ impl<'g> SessionRenderer<'g> {
     /// While nothing else is to be done, makes a map for moving pictures to come.
     pub(super) fn prepare_map(&mut self) -> Result<(), gpu::Error> {
         let Some(job) = &self.job else { return Ok(()) };
-        let (size, tier) = (job.size, job.selection.tier);
-        let backend = Backend::of(self.gpu, tier);
+        let size = job.size;
+        let backend = Backend::of(self.gpu, &job.selection);
         let preview = self.session.preview();
         if let Some(density) = self.maps.missing(&preview, size) {
             self.maps.make(backend, density, size)?;

@@ -1,0 +1,188 @@
+//! What a certified picture is certified by: what it is of, who calculated it, and how.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+
+use crate::effects::{EffectSet, Effects};
+use crate::engine::Stages;
+use crate::precision::Tier;
+use crate::scene::{Names, Scene};
+use crate::settings::Settings;
+
+/// What a certificate says.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Certificate {
+    /// The program and its version.
+    pub program: &'static str,
+    #[serde(flatten)]
+    subject: Subject,
+    /// What rendered it, in words.
+    pub device: String,
+    /// The tier of its first kernel; none where the CPU reference calculated all of it.
+    pub kernel: Option<Tier>,
+    /// How many pixels are right by which stage.
+    pub stages: Stages,
+}
+
+/// What a certificate is of: nobody else's picture has all of this.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Subject {
+    scene: SceneHash,
+    settings: Settings,
+    effects: EffectSet,
+    /// As many bounces as the scene has use for.
+    depth: u32,
+    picture: PictureHash,
+}
+
+/// What a scene is told by.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct SceneHash {
+    spheres: usize,
+    lights: usize,
+    /// Of its numbers as a scene file has them, with as many digits as it takes to read them back unchanged, and without labels and
+    /// OUTPUT.
+    sha256: String,
+}
+
+impl SceneHash {
+    /// Of the numbers of `scene`, its size included.
+    pub fn of(scene: &Scene) -> Self {
+        let (sphere_names, light_names) = (Names::default(), Names::default());
+        let plain = Scene { sphere_names, light_names, output: None, ..scene.clone() };
+        let sha256 = hex(Sha256::digest(plain.to_string()));
+        Self { spheres: scene.spheres.len(), lights: scene.lights.len(), sha256 }
+    }
+}
+
+/// What a picture is told by.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct PictureHash {
+    width: u32,
+    height: u32,
+    /// Of its P6 file, whatever format it is stored in.
+    sha256: String,
+}
+
+/// The hash of a picture whose rows come one after another.
+#[derive(Debug, Clone)]
+pub struct PictureHasher {
+    size: (u32, u32),
+    sha256: Sha256,
+}
+
+impl PictureHasher {
+    /// For a picture of this width and height, none of whose rows is there yet.
+    pub fn new(width: u32, height: u32) -> Self {
+        let sha256 = Sha256::new_with_prefix(format!("P6\n{width} {height}\n255\n"));
+        Self { size: (width, height), sha256 }
+    }
+
+    /// Adds rows, 3 bytes a pixel.
+    pub fn add(&mut self, rgb: &[u8]) {
+        self.sha256.update(rgb);
+    }
+
+    /// The hash of all of them.
+    pub fn finish(self) -> PictureHash {
+        let (width, height) = self.size;
+        PictureHash { width, height, sha256: hex(self.sha256.finalize()) }
+    }
+}
+
+fn hex(bytes: impl AsRef<[u8]>) -> String {
+    bytes.as_ref().iter().fold(String::new(), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
+}
+
+impl Subject {
+    /// A picture of this scene.
+    pub fn new(scene: SceneHash, settings: &Settings, effects: &Effects, picture: PictureHash) -> Self {
+        Self { scene, settings: *settings, effects: effects.set, depth: effects.depth, picture }
+    }
+
+    /// The first field in which the certificate `text` is of something else, with both values; none where it is of this.
+    ///
+    /// # Errors
+    ///
+    /// Where the text is no certificate.
+    pub fn mismatch(&self, text: &str) -> Result<Option<String>, String> {
+        let certificate: Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
+        let own: Value = serde_json::to_string(self)
+            .and_then(|text| serde_json::from_str(&text))
+            .map_err(|error| error.to_string())?;
+        let mut found = None;
+        for (name, value) in own.as_object().into_iter().flatten() {
+            let Some(certified) = certificate.get(name) else {
+                return Err(format!("it does not say of which {name} it is"));
+            };
+            found = found.or_else(|| first_difference(name, certified, value));
+        }
+        Ok(found)
+    }
+}
+
+/// Where the certified value and the own one differ.
+fn first_difference(name: &str, certified: &Value, own: &Value) -> Option<String> {
+    match (certified, own) {
+        (Value::Object(certified), Value::Object(own)) => own.iter().find_map(|(key, value)| {
+            first_difference(&format!("{name}.{key}"), certified.get(key).unwrap_or(&Value::Null), value)
+        }),
+        (certified, own) if certified == own => None,
+        (certified, own) => Some(format!("{name} is {certified} there and {own} here")),
+    }
+}
+
+impl Certificate {
+    /// Of a picture that `device` rendered.
+    pub fn new(subject: Subject, device: String, kernel: Option<Tier>, stages: Stages) -> Self {
+        Self { program: concat!("trueray ", env!("CARGO_PKG_VERSION")), subject, device, kernel, stages }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Window;
+
+    fn subject(settings: &Settings, level: u8) -> Subject {
+        let scene = Scene::new(Window::default(), 1, 1);
+        let mut picture = PictureHasher::new(1, 1);
+        picture.add(&[level; 3]);
+        Subject::new(SceneHash::of(&scene), settings, &Effects::of(&scene.viewed(settings)), picture.finish())
+    }
+
+    #[test]
+    fn the_hash_of_a_picture_is_that_of_its_file() {
+        let mut hasher = PictureHasher::new(2, 1);
+        hasher.add(&[1, 2, 3]);
+        hasher.add(&[4, 5, 6]);
+        // sha256sum says so.
+        let expected = hex(Sha256::digest(b"P6\n2 1\n255\n\x01\x02\x03\x04\x05\x06"));
+        assert_eq!(hasher.finish().sha256, expected);
+        assert_eq!(hex([0, 10, 255]), "000aff");
+    }
+
+    #[test]
+    fn a_certificate_is_of_one_picture_under_one_name_for_each_part() {
+        let mut settings = Settings::exact();
+        settings.secondary.shadow = 0.1;
+        let own = subject(&settings, 7);
+        let certificate = Certificate::new(own.clone(), "card".into(), Some(Tier::Fast), Stages::default());
+        let text = serde_json::to_string_pretty(&certificate).unwrap_or_default();
+        assert_eq!(own.mismatch(&text), Ok(None));
+        let other = subject(&settings, 8).mismatch(&text);
+        assert!(other.is_ok_and(|found| found.is_some_and(|found| found.starts_with("picture.sha256 is \""))));
+        settings.secondary.shadow = 0.1_f64.next_up();
+        let found = subject(&settings, 7).mismatch(&text);
+        let expected = "settings.secondary.shadow is 0.1 there and 0.10000000000000002 here";
+        assert_eq!(found, Ok(Some(expected.to_owned())));
+        assert_eq!(own.mismatch("{}"), Err("it does not say of which depth it is".to_owned()));
+        assert!(own.mismatch("P6").is_err());
+    }
+}

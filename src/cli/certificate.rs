@@ -1,0 +1,51 @@
+//! `--certificate` of `trueray render`.
+
+use std::path::Path;
+
+use super::failure::Failure;
+use super::files::save_json;
+use crate::certificate::{Certificate, PictureHasher, SceneHash, Subject};
+use crate::effects::Effects;
+use crate::engine::{Stages, device_name};
+use crate::gpu::Gpu;
+use crate::precision::Selection;
+use crate::scene::Scene;
+use crate::settings::Settings;
+
+/// The certificate of a picture that is being rendered, if one is wanted.
+pub(super) struct CertificateFile<'a>(Option<Begun<'a>>);
+
+struct Begun<'a> {
+    path: &'a Path,
+    scene: SceneHash,
+    picture: PictureHasher,
+}
+
+impl<'a> CertificateFile<'a> {
+    /// For a picture of `scene`, none of whose rows is there yet.
+    pub(super) fn new(path: Option<&'a Path>, scene: &Scene) -> Self {
+        let picture = || PictureHasher::new(scene.width, scene.height);
+        Self(path.map(|path| Begun { path, scene: SceneHash::of(scene), picture: picture() }))
+    }
+
+    /// Adds rows, 3 bytes a pixel.
+    pub(super) fn add(&mut self, rgb: &[u8]) {
+        if let Some(begun) = &mut self.0 {
+            begun.picture.add(rgb);
+        }
+    }
+
+    /// Writes it: all rows are there, and `stages` says by what they are right.
+    pub(super) fn write(
+        self,
+        (settings, effects): (&Settings, &Effects),
+        gpu: Option<&Gpu>,
+        selection: &Selection,
+        stages: Option<Stages>,
+    ) -> Result<(), Failure> {
+        let (Some(Begun { path, scene, picture }), Some(stages)) = (self.0, stages) else { return Ok(()) };
+        let subject = Subject::new(scene, settings, effects, picture.finish());
+        let kernel = Some(selection.tier).filter(|_| stages.kernel > 0);
+        save_json(path, &Certificate::new(subject, device_name(gpu), kernel, stages))
+    }
+}

@@ -1,0 +1,529 @@
+//! How far rounding may have moved what a renderer calculates, carried along by that renderer itself; read it beside
+//! `shaders/bound_cone.wgsl`.
+//!
+//! A ray is known as a cone: its origin to `position`, in world units, its direction to `direction`, as an angle. At every
+//! decision the cone has to lie on one side; where it does not, the pixel is marked. So is one whose colour is not known well
+//! enough to name its level. What is not marked is what exact arithmetic gives.
+//!
+//! Bounds are to first order, with the second order where surfaces are grazed or strongly bent; `src/roundings.rs` has how many
+//! roundings add up.
+
+use super::decision::Decision;
+use super::intersect::{Approach, Crossing, Hit, Own, Range, Ray};
+use super::real::Real;
+use super::refract::Snell;
+use super::render::Levels;
+use super::scene::{PointLight, Shape, World};
+use super::shade::{LightTerms, Surface, max, min, specular_power};
+use super::vec3::Vec3;
+use super::witness::Witness;
+use crate::roundings::{
+    ANGLE, AXES, LENGTH, LOCAL, LOST, NEAR, NOTHING, PLACE, POWER, ROOT, ROOT_AT_EDGE, SQUARE, TERM,
+};
+use crate::settings::Specular;
+
+/// What is known of a ray: the cone around it.
+#[derive(Debug, Clone, Copy)]
+struct Cone<T> {
+    /// Error of the origin, in world units.
+    position: T,
+    /// Error of the direction, as an angle.
+    direction: T,
+}
+
+/// The bound of one sample, while it is traced in `T`.
+#[derive(Debug, Clone)]
+pub(crate) struct Bound<T> {
+    /// Unit roundoff.
+    u: T,
+    /// Roundings of a place on its way into object space, as a part of its distance, and as a part of the radius with those of its square.
+    place: T,
+    local: T,
+    /// What of the centre as an input is not counted with these.
+    center: T,
+    cone: Cone<T>,
+    /// Of the refraction rays that wait.
+    waiting: Vec<(Cone<T>, T)>,
+    /// The width of the cone at t is `base` + |t|·`slope`, in world units.
+    base: T,
+    slope: T,
+    /// Of the search in hand: the least distance at which any ray of the cone may meet a sphere, and the least of another one;
+    first: T,
+    second: T,
+    /// with the sphere of the first;
+    first_shape: Option<Shape<T>>,
+    /// the greatest squared error of such a distance, and that of the own sphere's.
+    error: T,
+    exit: T,
+    /// What makes the second unsure.
+    cause: Decision,
+    /// Of the shadow ray in hand.
+    is_blocked: bool,
+    may_be_blocked: bool,
+    /// Error of the unit normal of the surface in hand.
+    normal: T,
+    /// Of the light in hand: the error of N·L, and that of the direction to it.
+    light: [T; 2],
+    shows_light: bool,
+    /// Whether the colour has its first product of constants.
+    is_begun: bool,
+    /// Weight of the ray in hand.
+    throughput: T,
+    /// How far the colour may be off, and the sizes of all its terms but a first product of constants: of the channels the greatest.
+    color: T,
+    sizes: T,
+    /// The first decision that the cone does not leave sure.
+    pub unsure: Option<Decision>,
+}
+
+impl<T: Real> Bound<T> {
+    /// Of a primary ray whose direction is known to `direction`.
+    pub(crate) fn new(world: &World<T>, direction: T) -> Self {
+        let (zero, u) = (T::ZERO, T::from_f64(T::UNIT));
+        Self {
+            u,
+            place: T::from_f64(if world.ellipsoids { PLACE + AXES } else { PLACE }) * u,
+            local: T::from_f64(if world.ellipsoids { LOCAL + AXES + SQUARE } else { LOCAL + SQUARE }) * u,
+            center: if world.ellipsoids { u } else { zero },
+            cone: Cone { position: zero, direction },
+            waiting: Vec::new(),
+            base: zero,
+            slope: zero,
+            first: T::FAR,
+            second: T::FAR,
+            first_shape: None,
+            error: zero,
+            exit: zero,
+            cause: Decision::Tie,
+            is_blocked: false,
+            may_be_blocked: false,
+            normal: zero,
+            light: [zero; 2],
+            shows_light: true,
+            is_begun: false,
+            throughput: T::ONE,
+            color: zero,
+            sizes: zero,
+            unsure: None,
+        }
+    }
+
+    fn roundings(&self, count: f64) -> T {
+        T::from_f64(count) * self.u
+    }
+
+    fn mark(&mut self, decision: Decision) {
+        self.unsure.get_or_insert(decision);
+    }
+
+    /// Half the width of the cone at `t`, in the object space of `shape`, with the rounding on the way there.
+    fn width(&self, shape: &Shape<T>, t: T) -> T {
+        largest(shape.inv_scale) * (self.base + t.abs() * self.slope + self.center * size(shape.center))
+            + self.local * shape.radius
+    }
+
+    /// How far the discriminant may be off where the line is about a radius from the centre.
+    fn reach(&self, shape: &Shape<T>, at: &Approach<T>) -> T {
+        let width = self.width(shape, at.b / at.a);
+        two::<T>() * width * (shape.radius + width)
+    }
+
+    /// Likewise, to the side where the ray passes: long axes count less there.
+    fn reach_aside(&self, shape: &Shape<T>, at: &Approach<T>) -> T {
+        let t = at.b / at.a;
+        let width = self.width(shape, t);
+        let gradient = at.perpendicular * shape.inv_scale;
+        let world = self.base + t.abs() * self.slope + self.center * size(shape.center);
+        let rounding = self.place * (t.abs() * at.a.sqrt()) + self.local * shape.radius;
+        two::<T>() * (length(gradient) * world + length(at.perpendicular) * rounding + width * width)
+    }
+
+    /// How near to its surface the start of the ray has to lie for its side to be in doubt.
+    fn near(&self, shape: &Shape<T>) -> T {
+        let width = self.width(shape, T::ZERO);
+        T::from_f64(NEAR) * width * (shape.radius + width)
+    }
+
+    /// Whether it is in doubt that the line meets the sphere.
+    fn is_edge(&self, shape: &Shape<T>, at: &Approach<T>, reach: T) -> bool {
+        // NaN is in doubt.
+        !(at.discriminant.abs() > reach) && !(at.discriminant.abs() > self.reach_aside(shape, at))
+    }
+
+    /// A sphere is met from `t` on; where that is in doubt, it counts as two.
+    fn push(&mut self, t: T, is_doubt: bool, cause: Decision, shape: &Shape<T>) {
+        if t == self.first && self.first_shape.is_some_and(|first| is_same(&first, shape)) {
+            return;
+        }
+        if is_doubt {
+            self.cause = cause;
+            self.second = min(self.second, t);
+        }
+        if t < self.first {
+            (self.second, self.first) = (min(self.second, self.first), t);
+            self.first_shape = Some(*shape);
+        } else {
+            self.second = min(self.second, t);
+        }
+    }
+
+    /// Error of the distance at which a ray leaves its own sphere.
+    fn exit_error(&self, ray: &Ray<T>, shape: &Shape<T>) -> T {
+        let length = length(ray.direction * shape.inv_scale);
+        let stretch = largest(shape.inv_scale);
+        let place = stretch * self.base + self.local * shape.radius;
+        two::<T>() * (place + T::from_f64(3.0) * shape.radius * (stretch * self.slope / length)) / length
+    }
+
+    /// Adds a term of this size to the colour, with its error.
+    fn add_term(&mut self, size: T, error: T) {
+        let weight = self.throughput.abs();
+        self.sizes += size * weight;
+        self.color += error * weight + self.roundings(TERM) * (size * weight) + self.u * self.sizes;
+    }
+
+    /// How far this colour may be off in each channel.
+    pub(crate) fn error_of(&self, color: Vec3<T>) -> T {
+        self.color + self.roundings(TERM) * largest(absolute(color))
+    }
+
+    /// Whether all colours as near to this one as it is known have the same levels; `others` is the unit roundoff of the renderer that
+    /// it is held against, as a part of this one's.
+    pub(crate) fn has_sure_levels(&self, color: Vec3<T>, levels: &Levels<T>, others: T) -> bool {
+        if self.sizes == T::ZERO {
+            // A product of constants: the host has its levels.
+            return true;
+        }
+        levels.are_equal(color, self.error_of(color) * (T::ONE + others), self.u)
+    }
+}
+
+impl<T: Real> Witness<T> for Bound<T> {
+    fn search(&mut self, ray: &Ray<T>, light: bool) {
+        let place = self.place;
+        let length = length(ray.direction);
+        let origin = size(ray.origin);
+        if light {
+            // Both ends of the way are known.
+            self.base = self.cone.position + place * (origin + length);
+            self.slope = place * length;
+        } else {
+            self.base = self.cone.position + place * origin;
+            self.slope = length * (self.cone.direction + place);
+        }
+        (self.first, self.second) = (T::FAR, T::FAR);
+        (self.error, self.exit) = (T::ZERO, T::ZERO);
+        self.first_shape = None;
+        self.cause = Decision::Tie;
+        self.is_blocked = false;
+        self.may_be_blocked = false;
+    }
+
+    fn tested(&mut self, _ray: &Ray<T>, shape: &Shape<T>, at: &Approach<T>, range: &Range<T>) {
+        let reach = self.reach(shape, at);
+        if at.discriminant < -reach {
+            return;
+        }
+        let radius_squared = shape.radius * shape.radius;
+        // The squared distance of the place where roots begin to count.
+        let start = at.origin.dot(at.origin) - radius_squared - range.t_min * (at.b + at.b - range.t_min * at.a);
+        let is_near = !(start.abs() > self.near(shape));
+        let is_behind = at.b <= at.a * range.t_min;
+        if !is_near && is_behind && (start > T::ZERO || !range.greater) {
+            return;
+        }
+        let closest = at.b / at.a;
+        if is_near {
+            self.push(range.t_min, true, Decision::NearPlane, shape);
+        } else if self.is_edge(shape, at, reach) {
+            self.push(max(closest - shape.radius / at.a.sqrt(), range.t_min), true, Decision::Silhouette, shape);
+        } else if at.discriminant > T::ZERO && (start > T::ZERO || range.greater) {
+            let half_chord = (at.discriminant / at.a).sqrt();
+            let t = if start > T::ZERO { closest - half_chord } else { closest + half_chord };
+            self.push(t, false, Decision::Tie, shape);
+            self.error = max(self.error, reach / at.a);
+        }
+    }
+
+    fn tested_own(&mut self, ray: &Ray<T>, own: &Own<T>, shape: &Shape<T>, t: T, range: &Range<T>) {
+        if !own.inside {
+            return;
+        }
+        let error = self.exit_error(ray, shape);
+        let is_near = |end: T| !((t - end).abs() > error);
+        if range.t_max == T::ONE {
+            if is_near(range.t_min) || is_near(T::ONE) {
+                self.may_be_blocked = true;
+            } else if t > range.t_min && t < T::ONE {
+                self.is_blocked = true;
+            }
+        } else if is_near(range.t_min) {
+            self.push(range.t_min, true, Decision::Epsilon, shape);
+        } else if t > range.t_min {
+            self.push(t, false, Decision::Tie, shape);
+            self.exit = error;
+        }
+    }
+
+    fn crossed(&mut self, _ray: &Ray<T>, shape: &Shape<T>, crossing: &Crossing<T>, blocks: bool, t_min: T) -> bool {
+        let Crossing { at, start_squared, end_squared } = crossing;
+        let reach = self.reach(shape, at);
+        if at.discriminant < -reach {
+            return false;
+        }
+        let near = self.near(shape);
+        let is_near = |squared: T| !((squared - shape.radius * shape.radius).abs() > near);
+        let passes = at.b > at.a * t_min && at.b < at.a;
+        if (passes && self.is_edge(shape, at, reach)) || is_near(*start_squared) || is_near(*end_squared) {
+            self.may_be_blocked = true;
+            return false;
+        }
+        self.is_blocked |= blocks;
+        blocks
+    }
+
+    fn nearest(
+        &mut self,
+        world: &World<T>,
+        ray: &Ray<T>,
+        _own: Option<&Own<T>>,
+        _range: &Range<T>,
+        hit: Option<Hit<T>>,
+    ) -> Option<Hit<T>> {
+        let error = T::from_f64(2.0 * ROOT_AT_EDGE) * self.error.sqrt() + self.exit;
+        let is_unsure = match &hit {
+            // NaN is in doubt.
+            Some(hit) => !(self.second - hit.t > error + self.roundings(ROOT) * hit.t.abs()),
+            None => self.second < T::FAR,
+        };
+        if is_unsure {
+            self.mark(self.cause);
+        }
+        // Lists of spheres take a ray for what it is but for so much.
+        let width = if let Some(hit) = &hit {
+            self.base + hit.t.abs() * self.slope
+        } else {
+            let along = (ray.origin - world.middle).dot(ray.direction) / length(ray.direction);
+            self.base + max(world.extent - along, T::ZERO) * (self.cone.direction + self.place)
+        };
+        if !(width <= world.allowance) {
+            self.mark(Decision::Silhouette);
+        }
+        hit
+    }
+
+    fn background(&mut self, world: &World<T>) {
+        if self.is_begun {
+            self.add_term(largest(absolute(world.background)), T::ZERO);
+        }
+    }
+
+    fn surface(&mut self, world: &World<T>, ray: &Ray<T>, hit: &Hit<T>, at: &Approach<T>, surface: &Surface<T>) {
+        let shape = &world.shapes[hit.sphere];
+        let material = &world.materials[hit.sphere];
+        let local = surface.own.local;
+        let t = hit.t.abs();
+        // |D·local|, the gradient in the world of half the squared distance from the centre.
+        let gradient = length(local * shape.inv_scale);
+        let world_width = self.base + t * self.slope + self.center * size(shape.center);
+        let rounding = self.place * (t * at.a.sqrt()) + self.local * shape.radius;
+        let stretched = largest(shape.inv_scale) * world_width + rounding;
+        let reach = two::<T>() * (gradient * world_width + shape.radius * rounding + stretched * stretched);
+        let rest = at.discriminant - reach;
+        if !(rest > T::ZERO) {
+            self.mark(Decision::Silhouette);
+        }
+        // w/|N·d| with N·d = √(a·discriminant)/|g|, of the least discriminant.
+        let slant = length(ray.direction) / (at.a * rest).sqrt();
+        let aside = slant * (T::from_f64(0.5) * reach);
+        let greatest = largest(material.scale);
+        // How far the closest approach, and so the hit, is off along the ray is seen from the former: it is at right angles to the ray.
+        let shifted = greatest
+            * (at.perpendicular.dot(at.direction).abs() / at.a.sqrt() + self.roundings(2.0 * ANGLE) * shape.radius);
+        // Along the ray a normal of a sphere turns by no more than where the ray is aslant.
+        let aslant = if world.ellipsoids {
+            T::ONE
+        } else {
+            max(T::ONE - at.discriminant / (shape.radius * shape.radius), T::ZERO).sqrt()
+        };
+        self.normal = normal_error(shape, local, gradient, aside + aslant * shifted, world_width + shifted)
+            + self.roundings(ANGLE);
+        let place = size(shape.center) + greatest * shape.radius;
+        self.cone.position = aside + shifted + self.roundings(ANGLE) * place;
+        if self.is_begun {
+            self.add_term(largest(absolute(world.ambient * material.color)) * material.ka.abs(), T::ZERO);
+        }
+        self.is_begun = true;
+    }
+
+    fn lit(&mut self, world: &World<T>, surface: &Surface<T>, light: &PointLight<T>, n_dot_l: T, is_lit: bool) -> bool {
+        let material = &world.materials[surface.sphere];
+        self.shows_light = material.kd != T::ZERO || material.ks != T::ZERO;
+        if !self.shows_light {
+            return is_lit;
+        }
+        let place = self.roundings(ANGLE) * (size(light.position) + size(surface.position));
+        let distance = length(light.position - surface.position);
+        let direction = (self.cone.position + place) / distance + self.roundings(ANGLE);
+        let angle = self.normal + direction;
+        // cos changes by sin·dα + ½dα², and with the lengths of both unit vectors.
+        let sine = max(T::ONE - n_dot_l * n_dot_l, T::ZERO).sqrt();
+        let cosine = sine * angle + angle * angle + self.roundings(2.0 * LENGTH + ANGLE) * n_dot_l.abs();
+        self.light = [cosine, direction];
+        // NaN is in doubt.
+        if !(angle < T::from_f64(LOST)) || !(n_dot_l.abs() > cosine) {
+            self.mark(Decision::Terminator);
+        }
+        is_lit
+    }
+
+    fn blocked(&mut self, world: &World<T>, _ray: &Ray<T>, _own: &Own<T>, is_blocked: bool) -> bool {
+        let is_lost = !(self.cone.position <= world.light_allowance);
+        if self.shows_light && (is_lost || (self.may_be_blocked && !self.is_blocked)) {
+            self.mark(Decision::ShadowEdge);
+        }
+        is_blocked
+    }
+
+    fn shaded(&mut self, world: &World<T>, surface: &Surface<T>, light: &PointLight<T>, terms: &LightTerms<T>) {
+        let material = &world.materials[surface.sphere];
+        let [cosine_error, light_error] = self.light;
+        let diffuse = largest(absolute(light.intensity * material.color)) * material.kd.abs();
+        self.add_term(diffuse, diffuse * cosine_error);
+
+        let angle_error = match world.specular {
+            // The mirrored vector turns with what is wrong in the length of the normal, twice as much.
+            Specular::Phong => {
+                two::<T>() * self.normal + light_error + self.cone.direction + self.roundings(4.0 * LENGTH + ANGLE)
+            }
+            // The sum of two unit vectors turns by what they turn and by what is wrong in their lengths, over its own.
+            Specular::Blinn => {
+                let sum = length(terms.to_light + surface.view);
+                let parts = light_error + self.cone.direction + self.roundings(2.0 * LENGTH + ANGLE);
+                self.normal + parts / sum + self.roundings(2.0 * LENGTH + ANGLE)
+            }
+        };
+        let power = power_error(terms.d, material.n, angle_error, specular_power(terms.d, material.n), self.u);
+        let intensity = largest(absolute(light.intensity));
+        self.add_term(intensity * terms.specular.abs(), intensity * material.ks.abs() * power);
+    }
+
+    fn reflected(&mut self, throughput: T) {
+        let turn = self.normal + self.roundings(LENGTH + ANGLE);
+        self.cone.direction += two::<T>() * turn;
+        self.throughput = throughput;
+    }
+
+    fn refracted(&mut self, _world: &World<T>, _surface: &Surface<T>, snell: Snell<T>, throughput: T) -> Snell<T> {
+        let Snell { ratio, cosine, square, bend } = snell;
+        let sine_squared = max(T::ONE - cosine * cosine, T::ZERO);
+        // The angle between ray and normal is off by so much, its cosine by sin·dα + ½dα².
+        let angle = self.cone.direction + self.normal + self.roundings(ANGLE);
+        let cosine_error = sine_squared.sqrt() * angle + angle * angle + self.roundings(2.0 * LENGTH + ANGLE) * cosine;
+        let ratio_error = if ratio == T::ONE { T::ZERO } else { self.roundings(4.0) * ratio };
+        // k = 1 − r²(1 − c²).
+        let along = ratio * cosine;
+        let square_error = two::<T>() * ratio * ratio * cosine * cosine_error
+            + ratio * ratio * cosine_error * cosine_error
+            + two::<T>() * ratio * sine_squared * ratio_error
+            + self.roundings(2.0 * ANGLE) * max(along * along, (ratio * ratio - T::ONE).abs());
+        if !(square.abs() > square_error) {
+            self.mark(Decision::CriticalAngle);
+        }
+        let direction = if snell.is_total() {
+            self.cone.direction + two::<T>() * (self.normal + self.roundings(LENGTH + ANGLE))
+        } else {
+            // The derivatives of the bend r·c − √k by c and by r, of the least k.
+            let root = max(square - square_error, T::from_f64(1e-30)).sqrt();
+            ratio * self.cone.direction
+                + bend.abs() * self.normal
+                + ratio * (bend.abs() / root) * cosine_error
+                + (two::<T>() + ratio * sine_squared / root) * ratio_error
+                + self.roundings(2.0 * LENGTH + ANGLE) * (bend.abs() + ratio)
+        };
+        self.waiting.push((Cone { direction, ..self.cone }, throughput));
+        snell
+    }
+
+    fn resumed(&mut self) {
+        if let Some((cone, throughput)) = self.waiting.pop() {
+            (self.cone, self.throughput) = (cone, throughput);
+        }
+    }
+}
+
+/// Error of the unit normal at `local`, in object space, where the gradient is so long, and the place is off by `along` along the
+/// surface and by `off` from it, in world units.
+///
+/// The normal is along D·P, with D the diagonal matrix of 1/s² and P the place relative to the centre: linear in P. Along the surface
+/// D stretches by the greater eigenvalue λ of its part in the tangent plane; the surface curves away from that plane by
+/// λ/(2|g|)·`along`², which D stretches by no more than its greatest entry. Along the normal n, D turns it by |Dn − (nᵀDn)n|.
+fn normal_error<T: Real>(shape: &Shape<T>, local: Vec3<T>, gradient: T, along: T, off: T) -> T {
+    let s = shape.inv_scale;
+    if s.x == s.y && s.y == s.z {
+        return s.x * along / shape.radius;
+    }
+    let d = s * s;
+    let normal = local * s * (T::ONE / gradient);
+    let n = normal * normal;
+    let trace = d.x * (n.y + n.z) + d.y * (n.z + n.x) + d.z * (n.x + n.y);
+    let determinant = n.x * d.y * d.z + n.y * d.z * d.x + n.z * d.x * d.y;
+    let root = max(trace * trace - T::from_f64(4.0) * determinant, T::ZERO).sqrt();
+    let sideways = T::from_f64(0.5) * (trace + root) * along;
+    let across = d * normal;
+    let turned = length(across - normal * normal.dot(across));
+    let curved = T::from_f64(0.5) * largest(d) * (sideways / gradient) * along;
+    let error = (sideways + curved + turned * off) / gradient;
+    // An error half as long as the gradient can turn it anywhere.
+    if error < T::from_f64(0.5) { error / (T::ONE - error) } else { two() }
+}
+
+/// Error of this power, cosⁿ, where 1 − cos is `d` and the angle is off by `angle`.
+///
+/// The chord of the angle is √2d and moves by no more than it does. The logarithm of the power moves by no more than
+/// x = n·Δd/(1 − d − Δd), and the power by the factor eˣ, which is at most 1 + x + x² for x ≤ 1.
+fn power_error<T: Real>(d: T, n: T, angle: T, power: T, u: T) -> T {
+    let change = (two::<T>() * d).sqrt() * angle + T::from_f64(0.5) * angle * angle;
+    let least = T::ONE - d - change;
+    let greatest = T::ONE - d + change;
+    if greatest <= T::ZERO || n <= T::ZERO {
+        return T::ZERO;
+    }
+    let exponent = n * (-d).log1p();
+    let x = n * change / least + T::from_f64(POWER) * u * (T::ONE - exponent);
+    if !(least > T::ZERO) {
+        // A power of at least 1 is no greater than its base.
+        if n >= T::ONE { min(greatest, T::ONE) } else { T::ONE }
+    } else if x <= T::ONE {
+        power * (x + x * x)
+    } else if exponent + x < T::from_f64(NOTHING) {
+        T::from_f64(NOTHING).exp()
+    } else {
+        T::ONE
+    }
+}
+
+fn is_same<T: Real>(a: &Shape<T>, b: &Shape<T>) -> bool {
+    a.center == b.center && a.inv_scale == b.inv_scale && a.radius == b.radius
+}
+
+fn two<T: Real>() -> T {
+    T::ONE + T::ONE
+}
+
+fn length<T: Real>(v: Vec3<T>) -> T {
+    v.dot(v).sqrt()
+}
+
+/// At least the length.
+fn size<T: Real>(v: Vec3<T>) -> T {
+    v.x.abs() + v.y.abs() + v.z.abs()
+}
+
+fn absolute<T: Real>(v: Vec3<T>) -> Vec3<T> {
+    Vec3::new(v.x.abs(), v.y.abs(), v.z.abs())
+}
+
+fn largest<T: Real>(v: Vec3<T>) -> T {
+    max(v.x, max(v.y, v.z))
+}
