@@ -275,7 +275,7 @@ fn note_surface(ray: Ray, body: Body, scale: vec3r, local: vec3r, hit: Hit) {
     // w/|N.d| with N.d = sqrt(a discriminant)/|g|, of the least discriminant.
     let slant = sqrt(ray.a / (at.a * rest));
     // How far the closest approach, and so the hit, is off along the ray is seen from the former: it is at right angles to the ray.
-    let shifted = greatest * (abs(dot(at.perpendicular, at.direction)) / sqrt(at.a) + ROUNDOFF * (ANGLE + ANGLE) * radius);
+    let shifted = greatest * (abs(dot(at.perpendicular, at.direction)) / sqrt(at.a) + ROUNDOFF * (LENGTH + ANGLE) * radius);
     let aside = slant * (real(0.5) * reach);
     // Along the ray a normal of a sphere turns by no more than where the ray is aslant.
     let aslant = select(sqrt(max(real(1.0) - at.discriminant / (radius * radius), real(0.0))), real(1.0), ELLIPSOIDS);

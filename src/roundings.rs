@@ -1,6 +1,9 @@
 //! How many roundings add up in what a renderer calculates, as `shaders/bound_cone.wgsl` and `src/cpu/bound.rs` count them: in units of
 //! the unit roundoff u, half a unit in the last place, which each operation and each input that is rounded adds.
 //!
+//! A quotient and a square root count for what Vulkan allows them, 2.5 units in the last place, where they do more than change the
+//! length of a vector or move a place along its ray, which is bounded by what is seen of it.
+//!
 //! Each has a reserve of a fourth and more, for what is of higher order and for the rounding of the bound itself.
 
 /// Of a place on its way into object space, to the side of the ray, as a part of its distance: the centre as an input, a difference, and
@@ -16,15 +19,15 @@ pub(crate) const AXES: f64 = 4.5;
 /// sums of three, a difference.
 pub(crate) const SQUARE: f64 = 5.0;
 /// Of a root beyond what moves the place: products, sums and a quotient.
-pub(crate) const ROOT: f64 = 16.0;
+pub(crate) const ROOT: f64 = 24.0;
 /// Of what turns a unit vector: a product for each component, and the difference or sum before it.
 pub(crate) const ANGLE: f64 = 4.0;
-/// Of a unit vector's length: half a sum of three products, a root, a quotient and a product.
-pub(crate) const LENGTH: f64 = 6.0;
+/// Of a unit vector's length: half a sum of three products, a root, a quotient and a product; likewise of half a chord's.
+pub(crate) const LENGTH: f64 = 13.0;
 /// Of a term of the colour: four inputs and products of them, and those of the weight of its ray.
 pub(crate) const TERM: f64 = 12.0;
 /// Of eˣ and ln(1 − d), once for each unit of the exponent.
-pub(crate) const POWER: f64 = 10.0;
+pub(crate) const POWER: f64 = 16.0;
 
 /// A root is good to so many square roots of the discriminant's error, where that error leaves it in no doubt that the sphere is met.
 pub(crate) const ROOT_AT_EDGE: f64 = 1.1;

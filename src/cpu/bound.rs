@@ -339,7 +339,7 @@ impl<T: Real> Witness<T> for Bound<T> {
         let greatest = largest(material.scale);
         // How far the closest approach, and so the hit, is off along the ray is seen from the former: it is at right angles to the ray.
         let shifted = greatest
-            * (at.perpendicular.dot(at.direction).abs() / at.a.sqrt() + self.roundings(2.0 * ANGLE) * shape.radius);
+            * (at.perpendicular.dot(at.direction).abs() / at.a.sqrt() + self.roundings(LENGTH + ANGLE) * shape.radius);
         // Along the ray a normal of a sphere turns by no more than where the ray is aslant.
         let aslant = if world.ellipsoids {
             T::ONE
