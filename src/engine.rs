@@ -184,7 +184,6 @@ impl<O: Output> DeviceEngine<'_, O> {
         if let Some(certifier) = &mut self.certifier {
             certifier.stages.reference += unsure.len() as u64;
             certifier.stages.more_bits += tally.more_bits;
-            certifier.stages.undecided += tally.undecided;
         }
         unsure.into_iter().zip(colors).for_each(|(pixel, color)| place(pixel, color));
         self.decided += start.elapsed();
@@ -338,8 +337,7 @@ impl<'a, O: Output> Engine<'a, O> {
     pub fn stages(&self) -> Option<Stages> {
         match self {
             Self::Cpu(cpu) => {
-                let Tally { more_bits, undecided, .. } = cpu.tally;
-                Some(Stages { reference: cpu.pixels, more_bits, undecided, ..Stages::default() })
+                Some(Stages { reference: cpu.pixels, more_bits: cpu.tally.more_bits, ..Stages::default() })
             }
             Self::Gpu(gpu) => gpu.certifier.as_ref().map(|certifier| certifier.stages),
         }

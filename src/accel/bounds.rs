@@ -27,11 +27,6 @@ impl Rounding {
     /// `f64` throughout.
     pub const DOUBLE: Self = Self { tests: 1.2e-16, lookups: 1.2e-16, cones: false };
 
-    /// The same, with room for what the errors of all that came before may move a ray in `f64`.
-    pub fn proven(self) -> Self {
-        Self { tests: self.tests.max(1e-7), ..self }
-    }
-
     /// The same, of a certified picture: with room for what the errors of all that came before may move a ray.
     pub fn certified(self) -> Self {
         Self { tests: (64.0 * self.tests).max(1e-9), lookups: 4.0 * self.lookups, cones: true }

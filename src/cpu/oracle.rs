@@ -3,8 +3,6 @@
 //! The renderers round ellipsoids to their object space first; here nothing is rounded before the first operation. Two
 //! independent formulas stand side by side: [`intersect`] runs the reference's own code, [`truth`] the moment form.
 
-use std::sync::Arc;
-
 use glam::DVec3;
 
 use super::dd::Dd;
@@ -15,6 +13,8 @@ use super::scene::{Glass, Material, Shape, World};
 use super::shade::surface_at;
 use super::tangent::Tangents;
 use super::vec3::Vec3;
+use crate::accel::Acceleration;
+use crate::exact::ExactScene;
 use crate::settings::Specular;
 
 /// What is known of a line and an ellipsoid.
@@ -148,10 +148,9 @@ fn glass_world<T: Real>(bodies: &[GlassBody]) -> World<T> {
         ellipsoids: true,
         middle: Vec3::ZERO,
         extent: T::ONE,
-        eye: 0.0,
-        accel: Arc::default(),
+        accel: Acceleration::default(),
         tangents: Tangents::default(),
-        exact: Arc::default(),
+        exact: ExactScene::default(),
     }
 }
 

@@ -1,7 +1,5 @@
 //! The scene in the scalar of the reference.
 
-use std::sync::Arc;
-
 use rayon::prelude::*;
 
 use super::intersect::Range;
@@ -95,17 +93,15 @@ pub(crate) struct World<T> {
     pub light_allowance: T,
     /// Whether object space differs from the world by more than a translation.
     pub ellipsoids: bool,
-    /// How far the eye is from the file's origin.
-    pub eye: f64,
     /// A ball around all spheres.
     pub middle: Vec3<T>,
     pub extent: T,
     /// Which spheres a ray can meet.
-    pub accel: Arc<Acceleration>,
+    pub accel: Acceleration,
     /// Which primary rays may just touch a sphere,
     pub tangents: Tangents,
     /// and whether they do.
-    pub exact: Arc<ExactScene>,
+    pub exact: ExactScene,
 }
 
 impl<T: Real> World<T> {
@@ -147,10 +143,9 @@ impl<T: Real> World<T> {
             ellipsoids: on(Effect::Ellipsoids),
             middle: Vec3::from_f64(accel.middle),
             extent: T::from_f64(accel.extent),
-            eye: viewed.eye_distance(),
-            accel: Arc::new(accel),
+            accel,
             tangents: Tangents::of(ellipsoids.par_iter().copied(), viewed, T::ROUNDING.tests),
-            exact: Arc::new(ExactScene::new(viewed, on(Effect::Ellipsoids))),
+            exact: ExactScene::new(viewed, on(Effect::Ellipsoids)),
         }
     }
 }

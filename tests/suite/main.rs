@@ -43,7 +43,6 @@ mod phong;
 mod pictures;
 #[cfg(feature = "view")]
 mod preview;
-mod proof;
 mod rays;
 mod refraction;
 mod sampling;
