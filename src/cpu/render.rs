@@ -212,8 +212,6 @@ pub struct Tally {
     pub shadow: u64,
     /// Reflected and refracted rays.
     pub reflection: u64,
-    /// Pixels that took more bits than `f64` has.
-    pub more_bits: u64,
 }
 
 impl Tally {
@@ -225,7 +223,6 @@ impl Tally {
             primary: self.primary + other.primary,
             shadow: self.shadow + other.shadow,
             reflection: self.reflection + other.reflection,
-            more_bits: self.more_bits + other.more_bits,
         }
     }
 }

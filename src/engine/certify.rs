@@ -27,17 +27,14 @@ pub struct Stages {
     pub double: u64,
     /// By the CPU reference, of the others.
     pub reference: u64,
-    /// Those of them for which the reference took more bits than `f64` has.
-    pub more_bits: u64,
 }
 
 impl Stages {
     /// Where the first kernel was that of `tier`.
     pub fn in_words(&self, tier: Tier) -> String {
-        let Self { kernel, double, reference, more_bits } = self;
-        let more = if *more_bits > 0 { format!(", {more_bits} of them with more bits") } else { String::new() };
+        let Self { kernel, double, reference } = self;
         let again = if tier == Tier::Double { String::new() } else { format!("{double} by double, ") };
-        format!("{kernel} pixels by {tier}, {again}{reference} by the CPU reference{more}")
+        format!("{kernel} pixels by {tier}, {again}{reference} by the CPU reference")
     }
 }
 

@@ -42,7 +42,6 @@ fn assert_certified(case: &str, gpu: &Gpu, scene: &Scene, settings: &Settings, d
     assert_eq!((wrong, not_finite), (0, expected_not_finite), "{case}");
     let stages = engine.stages().unwrap();
     assert_eq!(stages.kernel + stages.double + stages.reference, expected.pixel_count(), "{case}: {stages:?}");
-    assert!(stages.more_bits <= stages.reference, "{case}: {stages:?}");
     stages
 }
 
