@@ -39,11 +39,13 @@ pub struct Acceleration {
     pub lights: LightBuffer,
     /// For reflections, where there are any.
     pub grid: Option<Grid>,
-    /// How far a ray that leaves a surface may lie beside where the lists take it, in the units of kernels; and one to a light.
+    /// How far a ray that leaves a surface may lie beside where the lists take it, in the units of kernels.
     pub allowance: f64,
+    /// Likewise one to a light.
     pub light_allowance: f64,
-    /// A ball around all spheres.
+    /// Where rays have cones, a ball around all spheres.
     pub middle: DVec3,
+    /// Its radius.
     pub extent: f64,
 }
 
@@ -60,7 +62,7 @@ impl Acceleration {
         let lights: Vec<DVec3> = scene.lights.iter().map(|light| light.position).collect();
         let lit = effects.has(Effect::Shadows);
         let spheres = scene.spheres.len();
-        let (middle, extent) = enclosure.ball();
+        let (middle, extent) = if rounding.cones { enclosure.ball() } else { Default::default() };
         let for_lights = enclosure.with_room(LIGHT_ROOM, rounding);
         let entries = density.entries_of_a_light(spheres, lights.len());
         Self {

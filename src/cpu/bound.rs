@@ -10,12 +10,13 @@
 
 use super::decision::Decision;
 use super::intersect::{Approach, Crossing, Hit, Own, Range, Ray};
+use super::margin::normal_error;
 use super::real::Real;
 use super::refract::Snell;
 use super::render::Levels;
 use super::scene::{PointLight, Shape, World};
 use super::shade::{LightTerms, Surface, max, min, specular_power};
-use super::vec3::Vec3;
+use super::vec3::{Vec3, largest, length};
 use super::witness::Witness;
 use crate::roundings::{
     ANGLE, AXES, LENGTH, LOCAL, LOST, NEAR, NOTHING, PLACE, POWER, ROOT, ROOT_AT_EDGE, SQUARE, TERM,
@@ -340,14 +341,14 @@ impl<T: Real> Witness<T> for Bound<T> {
         // How far the closest approach, and so the hit, is off along the ray is seen from the former: it is at right angles to the ray.
         let shifted = greatest
             * (at.perpendicular.dot(at.direction).abs() / at.a.sqrt() + self.roundings(LENGTH + ANGLE) * shape.radius);
-        // Along the ray a normal of a sphere turns by no more than where the ray is aslant.
-        let aslant = if world.ellipsoids {
-            T::ONE
+        let turned = if world.ellipsoids {
+            normal_error(shape, local, aside + shifted, world_width + shifted, T::ZERO)
         } else {
-            max(T::ONE - at.discriminant / (shape.radius * shape.radius), T::ZERO).sqrt()
+            // Along the ray a normal turns by no more than where the ray is aslant.
+            let aslant = max(T::ONE - at.discriminant / (shape.radius * shape.radius), T::ZERO).sqrt();
+            shape.inv_scale.x * (aside + aslant * shifted) / shape.radius
         };
-        self.normal = normal_error(shape, local, gradient, aside + aslant * shifted, world_width + shifted)
-            + self.roundings(ANGLE);
+        self.normal = turned + self.roundings(ANGLE);
         let place = size(shape.center) + greatest * shape.radius;
         self.cone.position = aside + shifted + self.roundings(ANGLE) * place;
         if self.is_begun {
@@ -452,32 +453,6 @@ impl<T: Real> Witness<T> for Bound<T> {
     }
 }
 
-/// Error of the unit normal at `local`, in object space, where the gradient is so long, and the place is off by `along` along the
-/// surface and by `off` from it, in world units.
-///
-/// The normal is along D·P, with D the diagonal matrix of 1/s² and P the place relative to the centre: linear in P. Along the surface
-/// D stretches by the greater eigenvalue λ of its part in the tangent plane; the surface curves away from that plane by
-/// λ/(2|g|)·`along`², which D stretches by no more than its greatest entry. Along the normal n, D turns it by |Dn − (nᵀDn)n|.
-fn normal_error<T: Real>(shape: &Shape<T>, local: Vec3<T>, gradient: T, along: T, off: T) -> T {
-    let s = shape.inv_scale;
-    if s.x == s.y && s.y == s.z {
-        return s.x * along / shape.radius;
-    }
-    let d = s * s;
-    let normal = local * s * (T::ONE / gradient);
-    let n = normal * normal;
-    let trace = d.x * (n.y + n.z) + d.y * (n.z + n.x) + d.z * (n.x + n.y);
-    let determinant = n.x * d.y * d.z + n.y * d.z * d.x + n.z * d.x * d.y;
-    let root = max(trace * trace - T::from_f64(4.0) * determinant, T::ZERO).sqrt();
-    let sideways = T::from_f64(0.5) * (trace + root) * along;
-    let across = d * normal;
-    let turned = length(across - normal * normal.dot(across));
-    let curved = T::from_f64(0.5) * largest(d) * (sideways / gradient) * along;
-    let error = (sideways + curved + turned * off) / gradient;
-    // An error half as long as the gradient can turn it anywhere.
-    if error < T::from_f64(0.5) { error / (T::ONE - error) } else { two() }
-}
-
 /// Error of this power, cosⁿ, where 1 − cos is `d` and the angle is off by `angle`.
 ///
 /// The chord of the angle is √2d and moves by no more than it does. The logarithm of the power moves by no more than
@@ -511,10 +486,6 @@ fn two<T: Real>() -> T {
     T::ONE + T::ONE
 }
 
-fn length<T: Real>(v: Vec3<T>) -> T {
-    v.dot(v).sqrt()
-}
-
 /// At least the length.
 fn size<T: Real>(v: Vec3<T>) -> T {
     v.x.abs() + v.y.abs() + v.z.abs()
@@ -522,8 +493,4 @@ fn size<T: Real>(v: Vec3<T>) -> T {
 
 fn absolute<T: Real>(v: Vec3<T>) -> Vec3<T> {
     Vec3::new(v.x.abs(), v.y.abs(), v.z.abs())
-}
-
-fn largest<T: Real>(v: Vec3<T>) -> T {
-    max(v.x, max(v.y, v.z))
 }

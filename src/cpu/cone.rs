@@ -4,13 +4,13 @@
 use super::decision::Decision;
 use super::intersect::{Approach, Hit, Own, Range, Ray};
 use super::judge::Trial;
-use super::margin::{ANGLE, Crossing, LENGTH, Margins, Path, Roundoff, length};
+use super::margin::{ANGLE, Crossing, LENGTH, Margins, Path, Roundoff};
 use super::refract::Snell;
 use super::scene::{PointLight, World};
 use super::shade::{LightTerms, Surface, specular_power};
 use super::spread::{Extent, Gamut, Spread};
 use super::surfaces::Surfaces;
-use super::vec3::Vec3;
+use super::vec3::{Vec3, length};
 use super::witness::Witness;
 use crate::settings::Specular;
 

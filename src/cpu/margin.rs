@@ -7,8 +7,10 @@
 use glam::DVec3;
 
 use super::intersect::{Approach, Own, Ray, approach, exit_of};
+use super::real::Real;
 use super::scene::{Shape, World};
-use super::vec3::Vec3;
+use super::shade::max;
+use super::vec3::{Vec3, largest, length};
 use crate::precision::Tier;
 
 /// Roundings of a place on the way into object space: of inputs, and of what is calculated from them.
@@ -238,37 +240,30 @@ pub(super) struct PointError {
 /// P. Along the surface D stretches by the greater eigenvalue λ of its part in the tangent plane; the surface curves away from
 /// that plane by λ/(2|g|)·`along`², which D stretches by no more than its greatest entry. Along the normal n, D turns it by
 /// |Dn − (nᵀDn)n|.
-fn normal_error(shape: &Shape<f64>, local: Vec3<f64>, along: f64, off: f64, rounding: f64) -> f64 {
+pub(super) fn normal_error<T: Real>(shape: &Shape<T>, local: Vec3<T>, along: T, off: T, rounding: T) -> T {
+    let half = T::from_f64(0.5);
     // Both in units of 1/r².
     let gradient = local * shape.inv_scale;
     let length_of_gradient = length(gradient);
     let d = shape.inv_scale * shape.inv_scale;
-    let normal = gradient * (1.0 / length_of_gradient);
+    let normal = gradient * (T::ONE / length_of_gradient);
     let n = normal * normal;
     let trace = d.x * (n.y + n.z) + d.y * (n.z + n.x) + d.z * (n.x + n.y);
     let determinant = n.x * d.y * d.z + n.y * d.z * d.x + n.z * d.x * d.y;
-    let stretch = 0.5 * (trace + (trace * trace - 4.0 * determinant).max(0.0).sqrt());
-    let sideways = stretch * along;
+    let root = max(trace * trace - T::from_f64(4.0) * determinant, T::ZERO).sqrt();
+    let sideways = half * (trace + root) * along;
     let across = d * normal;
     let turned = length(across - normal * normal.dot(across));
     let error = (sideways
-        + 0.5 * largest(d) * (sideways / length_of_gradient) * along
+        + half * largest(d) * (sideways / length_of_gradient) * along
         + turned * off
         + largest(shape.inv_scale) * rounding)
         / length_of_gradient;
     // An error as long as the gradient can turn it anywhere.
-    if error < 0.5 { error / (1.0 - error) } else { 2.0 }
+    if error < half { error / (T::ONE - error) } else { T::from_f64(2.0) }
 }
 
 /// Greatest semi-axis of a sphere.
 pub(super) fn size(world: &World<f64>, sphere: usize) -> f64 {
     largest(world.materials[sphere].scale) * world.shapes[sphere].radius
-}
-
-pub(super) fn length(v: Vec3<f64>) -> f64 {
-    v.dot(v).sqrt()
-}
-
-fn largest(v: Vec3<f64>) -> f64 {
-    v.x.max(v.y).max(v.z)
 }

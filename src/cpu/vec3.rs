@@ -5,6 +5,7 @@ use std::ops::{Add, AddAssign, Mul, Neg, Sub};
 use glam::DVec3;
 
 use super::real::Real;
+use super::shade::max;
 
 /// A vector of three [`Real`]s; `*` between two vectors is componentwise, as in WGSL.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,6 +46,16 @@ impl<T: Real> Vec3<T> {
     pub(crate) fn normalize(self) -> Self {
         self * (T::ONE / self.dot(self).sqrt())
     }
+}
+
+/// |v|.
+pub(super) fn length<T: Real>(v: Vec3<T>) -> T {
+    v.dot(v).sqrt()
+}
+
+/// The greatest component.
+pub(super) fn largest<T: Real>(v: Vec3<T>) -> T {
+    max(v.x, max(v.y, v.z))
 }
 
 impl<T: Real> Add for Vec3<T> {

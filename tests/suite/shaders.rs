@@ -580,7 +580,7 @@ fn the_device_reads_every_field_where_the_host_wrote_it() {
         expected[sphere].insert(7, index);
     }
     for kernel in Tier::ALL.into_iter().filter_map(|tier| gpu.kernel(tier).ok()) {
-        let accel = Acceleration::new(&scene.viewed(&settings), effects.set, kernel.rounding());
+        let accel = Acceleration::new(&scene.viewed(&settings), effects.set, kernel.rounding().certified());
         let grid = accel.grid.unwrap();
         let single = |x: f64| (x as f32).to_bits();
         let mut expected = expected.clone();

@@ -8,10 +8,11 @@ const TWINS: &str = "
     bound: search=begin_search tested=note_other nearest=end_search crossed=note_crossed blocked=end_shadow
     bound: surface=note_surface lit=note_light shaded=note_lit background=note_background reflected=note_reflected
     bound: refracted=keep_cone resumed=go_on_with_cone width=bound_width reach=reach_of reach_aside is_edge near=near_of
-    bound: push=add_root add_term=add_bound exit_error normal_error power_error has_sure_levels
+    bound: push=add_root add_term=add_bound exit_error power_error has_sure_levels
     dd: fast_two_sum power_of_two two_product two_sum
     fill: color_of distance_squared index jump place smooth=filled
     intersect: accepted_root any_hit approach blocks exit_of is_behind nearer_of nearest_secondary nearest_seen roots
+    margin: normal_error
     real: exp=exponential is_finite weakened
     refract: refraction_ray snell_at
     render: levels primary_ray resolve

@@ -26,7 +26,7 @@ pub fn echo_layout(gpu: &Gpu, viewed: &ViewedScene, effects: &Effects, kernel: K
     if scene.spheres.len() != 2 || effects.set != EffectSet::ALL {
         return Err(Misuse::Picture("only two spheres with all effects are echoed".into()).into());
     }
-    let accel = Acceleration::new(viewed, effects.set, kernel.rounding());
+    let accel = Acceleration::new(viewed, effects.set, kernel.rounding().certified());
     let packed = Packed::new(viewed, effects, kernel, &accel, None, 0.25, true);
     let [head, sphere, light, tail] = COUNTS;
     let job = Job {
