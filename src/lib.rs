@@ -44,6 +44,8 @@
 // a crate of their own.
 #[doc(hidden)]
 pub mod accel;
+#[doc(hidden)]
+pub mod aov;
 mod atomic;
 #[doc(hidden)]
 pub mod bench;

@@ -32,6 +32,14 @@ another renderer made which pixels rounding explains; here rounding explains not
 
 Exit codes: 0 right, 1 wrong or another picture's certificate, 2 trouble.";
 
+pub(super) const PIXEL: &str = "\
+Examples:
+  trueray pixel scene.txt 320 240
+  trueray pixel --convention exact --device cpu --json scene.txt 0 17
+
+Numbers are in the units of the file. Margins say how far each decision is from being taken otherwise: a renderer whose \
+rounding errors come to as much shows another pixel.";
+
 pub(super) const CHECK: &str = "\
 Examples:
   trueray check scenes/effects/*.txt

@@ -1,6 +1,7 @@
 //! The command line: one file for each subcommand.
 
 mod after_help;
+mod aov;
 mod bench;
 mod certificate;
 mod check;
@@ -17,6 +18,7 @@ mod manual;
 mod named;
 mod options;
 mod output;
+mod pixel;
 mod progress;
 mod render;
 mod reports;
@@ -76,6 +78,9 @@ enum Command {
     /// Say whether a picture is its scene's in every pixel
     #[command(after_help = after_help::VERIFY)]
     Verify(verify::Args),
+    /// Show how one pixel came about: its rays, their tests, light and margins
+    #[command(after_help = after_help::PIXEL)]
+    Pixel(pixel::Args),
     /// Check scene files and summarise them, without rendering
     #[command(after_help = after_help::CHECK)]
     Check(check::Args),
@@ -139,6 +144,7 @@ pub fn run() -> ExitCode {
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Compare(args)) => Ok(compare::run(&args)),
         Some(Command::Verify(args)) => Ok(verify::run(&args)),
+        Some(Command::Pixel(args)) => pixel::run(&args).map(ok),
         Some(Command::Check(args)) => check::run(&args),
         Some(Command::Study(args)) => study::run(&args).map(ok),
         Some(Command::Stress(args)) => stress::run(&args).map_err(Failure::without_cpu),

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use super::aov::AovOptions;
 use super::certificate::CertificateFile;
 use super::failure::{Failure, OK, USAGE};
 use super::files::{check_place, json, save};
@@ -50,6 +51,8 @@ pub(super) struct Args {
     /// File format: p6, p3 or png; without it the file name's ending decides
     #[arg(long, value_name = "FORMAT", help_heading = "Output")]
     format: Option<Format>,
+    #[command(flatten)]
+    aov: AovOptions,
     /// Write whatever file OUTPUT names: also a hidden one, one without a picture's ending, or over a file that is no picture
     #[arg(long, help_heading = "Output")]
     allow_any_output: bool,
@@ -93,6 +96,7 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
         return Err(Failure::new(USAGE, "several scenes need a folder for -o, or none"));
     }
     check_certificate(args)?;
+    args.aov.check_scenes(args.scenes.len())?;
     let settings = args.picture.settings()?;
     let mut guard = Guard::new(&args.scenes);
     guard.options([("--certificate", &args.certificate)])?;
@@ -131,7 +135,7 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
         let rendered = job.and_then(|job| {
             let path = job.target.argument().to_owned();
             guard.check_unwritten(&format!("the picture of {}", job.loaded.name), &path)?;
-            let stats = render_one(args, &settings, job, gpu.as_ref(), [open_time, ready_time])?;
+            let stats = render_one(args, &settings, job, gpu.as_ref(), &mut guard, [open_time, ready_time])?;
             guard.written(&path);
             Ok(stats)
         });
@@ -199,6 +203,7 @@ fn render_one(
     settings: &Settings,
     Job { mut loaded, target, format }: Job,
     gpu: Option<&Gpu>,
+    guard: &mut Guard,
     [open_time, ready_time]: [Duration; 2],
 ) -> Result<Stats, Failure> {
     let start = Instant::now();
@@ -219,6 +224,7 @@ fn render_one(
     let wants_stats = args.stats || args.stats_json.is_some();
     let options = Options { count_rays: wants_stats && !args.no_ray_counts, ..Options::default() };
     let verify = args.verify.unwrap_or_else(|| Verify::usual(scene));
+    let mut aov = args.aov.of(&viewed, &effects, gpu.is_some())?;
     let mut renderer = match choice {
         None => Renderer::Whole(Engine::verified(backend, viewed, &effects, &options, verify)?),
         Some(choice) => Renderer::InPart(Engine::verified(backend, viewed, &effects, &options, verify)?, choice),
@@ -241,6 +247,7 @@ fn render_one(
             let picture = render_partial(engine, backend, &samples, fill, |part| progress.set(part))?;
             let start = Instant::now();
             writer.write_rows(&picture.rgb)?;
+            aov.iter_mut().for_each(|aov| aov.add(&picture.rgb));
             write_time += start.elapsed();
             let pixels = samples.pixels().len() as u64;
             sampled = Some(Sampled { density, fill, pixels, fill_ms: picture.fill_ms });
@@ -251,6 +258,7 @@ fn render_one(
             writer.write_rows(band.rgb)?;
             write_time += start.elapsed();
             certificate.add(band.rgb);
+            aov.iter_mut().for_each(|aov| aov.add(band.rgb));
             let rows = band.rgb.len() / (width as usize * 3);
             progress.set((f64::from(band.first) + rows as f64) / f64::from(height));
             Ok::<_, Failure>(())
@@ -265,6 +273,9 @@ fn render_one(
     progress.finish();
     write_time += finishing.elapsed();
 
+    if let Some(aov) = aov {
+        aov.write(&loaded.name, target.argument(), guard, args.quiet)?;
+    }
     certificate.write((settings, &effects), gpu, &selection, stages)?;
     if cut > 0 && !args.quiet {
         say_cut(&loaded.name, cut, &device_name(gpu));
@@ -345,6 +356,7 @@ fn target(args: &Args, loaded: &Loaded) -> Target {
 
 /// The scene with its target, if that can take a picture.
 fn job(args: &Args, loaded: Loaded, target: Target) -> Result<Job, Failure> {
+    args.aov.check(&target)?;
     if let Target::File(path) = &target {
         if folder(args).is_some() && !args.allow_any_output {
             check_named(path).map_err(|failure| failure.of(&loaded.name))?;

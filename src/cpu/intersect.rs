@@ -125,7 +125,7 @@ pub(crate) fn accepted_root<T: Real, W: Witness<T>>(
 }
 
 /// The least of both roots that counts, and whether it is the greater one.
-fn least_of<T: Real>((lesser, greater): (T, T), range: &Range<T>) -> Option<(T, bool)> {
+pub(super) fn least_of<T: Real>((lesser, greater): (T, T), range: &Range<T>) -> Option<(T, bool)> {
     let Range { t_min, t_max, .. } = *range;
     if lesser > t_min {
         (lesser < t_max).then_some((lesser, false))

@@ -6,6 +6,7 @@ mod constants;
 mod dd;
 mod decision;
 mod fill;
+mod inspect;
 mod intersect;
 mod judge;
 mod margin;
@@ -29,6 +30,10 @@ mod witness;
 pub use dd::Dd;
 pub use decision::Decision;
 pub use fill::{filled, nearest_samples};
+pub use inspect::{
+    Blocker, HitRecord, Inspector, LightRecord, Margin, PixelRecord, RayKind, RayRecord, SampleRecord, ShadowRecord,
+    SnellRecord, TestRecord, Verdict,
+};
 pub use judge::{Finding, Judge, Trial};
 pub use pick::{PrimaryHit, picked};
 pub use real::Real;

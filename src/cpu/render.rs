@@ -143,7 +143,7 @@ impl<T: Real> Reference<T> {
 /// The mean over a pixel's samples, row by row, `side` of them in each; read it beside `shaders/resolve.wgsl`. Taken from
 /// differences to the first sample, it is exact where all are equal.
 #[inline]
-fn resolve<T: Real>(mut samples: impl Iterator<Item = Vec3<T>>, side: u32) -> Vec3<T> {
+pub(super) fn resolve<T: Real>(mut samples: impl Iterator<Item = Vec3<T>>, side: u32) -> Vec3<T> {
     let Some(first) = samples.next() else { return Vec3::ZERO };
     let mut excess = Vec3::ZERO;
     for color in samples {

@@ -4,6 +4,8 @@
 //! [`PictureWriter`] streams, so a picture never has to be in memory as a whole to be written;
 //! [`read_picture`] recognises a file by its contents and is strict unless told otherwise.
 
+mod exr;
+mod pfm;
 mod png;
 mod ppm;
 mod problem;
@@ -14,8 +16,11 @@ use std::fmt;
 use std::path::Path;
 use std::str::FromStr;
 
+pub(crate) use exr::encode_exr;
+pub(crate) use pfm::encode_pfm;
 pub use problem::{FilePosition, Problem, ReadError, SamplePosition, Warning};
 pub use read::{Encoded, Leniency, Reading, decode, read_picture};
+pub(crate) use write::save_bytes;
 pub use write::{OutputError, PictureWriter, Target, encode_png, save_text};
 
 /// The greatest width and the greatest height of a [`Picture`], in pixels.

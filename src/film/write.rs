@@ -170,9 +170,14 @@ impl fmt::Debug for PictureWriter {
 /// # Errors
 /// A folder that does not exist, a file or folder without write permission, or whatever the system says.
 pub fn save_text(target: &Target, text: &str) -> Result<(), OutputError> {
-    let (raw, destination) = target.open(text.len() as u64).map_err(|source| target.error("create", source))?;
+    save_bytes(target, text.as_bytes())
+}
+
+/// Likewise of bytes.
+pub(crate) fn save_bytes(target: &Target, bytes: &[u8]) -> Result<(), OutputError> {
+    let (raw, destination) = target.open(bytes.len() as u64).map_err(|source| target.error("create", source))?;
     let mut output = Watched { raw, failure: Failure::default() };
-    output.write_all(text.as_bytes()).and_then(|()| output.flush()).map_err(|source| target.error("write", source))?;
+    output.write_all(bytes).and_then(|()| output.flush()).map_err(|source| target.error("write", source))?;
     drop(output);
     destination.map_or(Ok(()), Destination::commit).map_err(|source| target.error("finish", source))
 }

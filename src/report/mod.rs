@@ -3,9 +3,11 @@
 pub(crate) mod csv;
 pub(crate) mod lines;
 pub(crate) mod number;
+mod pixel;
 pub(crate) mod svg;
 mod timings;
 
+pub(crate) use pixel::{Labels, numbers, pixel_table};
 pub use timings::Timings;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};

@@ -7,6 +7,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "the test harness shows it where a test fails")]
 #![allow(missing_docs, reason = "test names say what they test")]
 
+mod aov;
 mod bench;
 mod bound;
 mod camera;
@@ -41,6 +42,7 @@ mod page;
 mod parse;
 mod phong;
 mod pictures;
+mod pixel;
 #[cfg(feature = "view")]
 mod preview;
 mod rays;

@@ -1,0 +1,246 @@
+//! `trueray render --aov`: intermediate values beside the picture.
+
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+
+use super::failure::{Failure, OUTPUT, USAGE};
+use super::files::check_place;
+use super::guard::Guard;
+use super::output::errln;
+use crate::aov::{Aov, Layer, TooMany, layers};
+use crate::cpu::Inspector;
+use crate::effects::Effects;
+use crate::film::{Format, Picture, Target, encode_exr, encode_pfm, save_bytes};
+use crate::settings::Quantize;
+use crate::viewed::ViewedScene;
+use crate::words::{count, visible, visible_path};
+
+/// Which intermediate values are written, and how.
+#[derive(Debug, Clone, clap::Args)]
+#[command(next_help_heading = "Output")]
+pub(super) struct AovOptions {
+    /// Intermediate values to write beside the picture, from the CPU reference: a list of the names below, or `all`
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_enum)]
+    aov: Vec<Wanted>,
+    /// Files of intermediate values: `png` for the eye, `pfm` with the numbers, `exr` with all numbers in one file
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_enum, default_value = "png,pfm", requires = "aov")]
+    aov_format: Vec<AovFormat>,
+    /// One EXR file of this name for all intermediate values
+    #[arg(long, value_name = "FILE", requires = "aov", conflicts_with = "aov_format")]
+    aov_file: Option<PathBuf>,
+}
+
+/// One kind of intermediate value, or all that there are.
+#[derive(Debug, Clone, Copy)]
+enum Wanted {
+    All,
+    One(Aov),
+}
+
+impl ValueEnum for Wanted {
+    fn value_variants<'a>() -> &'a [Self] {
+        const ALL: [Wanted; 19] = [
+            Wanted::All,
+            Wanted::One(Aov::Color),
+            Wanted::One(Aov::T),
+            Wanted::One(Aov::Sphere),
+            Wanted::One(Aov::Inside),
+            Wanted::One(Aov::Position),
+            Wanted::One(Aov::Normal),
+            Wanted::One(Aov::NDotL),
+            Wanted::One(Aov::Shadow),
+            Wanted::One(Aov::Background),
+            Wanted::One(Aov::Ambient),
+            Wanted::One(Aov::Diffuse),
+            Wanted::One(Aov::Specular),
+            Wanted::One(Aov::Bounce),
+            Wanted::One(Aov::Rays),
+            Wanted::One(Aov::Tests),
+            Wanted::One(Aov::Margin),
+            Wanted::One(Aov::Step),
+            Wanted::One(Aov::Error),
+        ];
+        &ALL
+    }
+
+    fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
+        match self {
+            Self::All => Some(clap::builder::PossibleValue::new("all").help("All that there are")),
+            Self::One(aov) => aov.to_possible_value(),
+        }
+    }
+}
+
+/// How layers are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum AovFormat {
+    /// A picture a layer, on a scale for the eye
+    Png,
+    /// The numbers of a layer
+    Pfm,
+    /// The numbers of all layers in one file of named channels
+    Exr,
+}
+
+impl AovOptions {
+    /// Refuses one file for the values of several scenes.
+    pub(super) fn check_scenes(&self, scenes: usize) -> Result<(), Failure> {
+        let is_one_file = scenes > 1 && self.aov_file.is_some();
+        if is_one_file { Err(Failure::new(USAGE, "--aov-file takes one scene")) } else { Ok(()) }
+    }
+
+    /// Refuses what cannot be written beside the picture.
+    pub(super) fn check(&self, target: &Target) -> Result<(), Failure> {
+        match target {
+            Target::Stdout if !self.aov.is_empty() && self.aov_file.is_none() => {
+                Err(Failure::new(USAGE, "--aov writes beside the picture: it needs a file for it, or --aov-file"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// What collects the values of a scene; `None` where none are wanted.
+    pub(super) fn of(
+        &self,
+        viewed: &ViewedScene,
+        effects: &Effects,
+        has_device: bool,
+    ) -> Result<Option<Collector>, Failure> {
+        let names_error = self.aov.iter().any(|wanted| matches!(wanted, Wanted::One(Aov::Error)));
+        if names_error && !has_device {
+            let message = "--aov error is of a device's picture, and the CPU reference renders this one";
+            return Err(Failure::new(USAGE, message));
+        }
+        if self.aov.is_empty() {
+            return Ok(None);
+        }
+        let all = || Aov::value_variants().iter().copied().filter(|&aov| aov != Aov::Error || has_device);
+        let wanted = self.aov.iter().flat_map(|wanted| match wanted {
+            Wanted::All => all().collect(),
+            Wanted::One(aov) => vec![*aov],
+        });
+        let wanted: Vec<Aov> = wanted.collect();
+        let picture = wanted.contains(&Aov::Error).then(Vec::new);
+        let (inspector, lights) = (Inspector::new(viewed, effects), viewed.scene().lights.len());
+        let quantize = viewed.settings().quantize;
+        let formats = if self.aov_file.is_some() { vec![AovFormat::Exr] } else { self.aov_format.clone() };
+        Ok(Some(Collector { inspector, lights, quantize, wanted, formats, file: self.aov_file.clone(), picture }))
+    }
+}
+
+/// A scene whose intermediate values are wanted.
+#[derive(Debug)]
+pub(super) struct Collector {
+    inspector: Inspector,
+    lights: usize,
+    quantize: Quantize,
+    wanted: Vec<Aov>,
+    formats: Vec<AovFormat>,
+    file: Option<PathBuf>,
+    /// The device's, where it is compared.
+    picture: Option<Vec<u8>>,
+}
+
+impl Collector {
+    /// Takes the next rows of the picture.
+    pub(super) fn add(&mut self, rgb: &[u8]) {
+        if let Some(picture) = &mut self.picture {
+            picture.extend_from_slice(rgb);
+        }
+    }
+
+    /// Calculates the values and writes their files, beside the picture of this name. Says which unless `quiet`.
+    pub(super) fn write(self, name: &str, picture: &Path, guard: &mut Guard, quiet: bool) -> Result<(), Failure> {
+        let shown = self.picture.as_deref();
+        let layers = layers(&self.inspector, self.lights, self.quantize, &self.wanted, shown)?;
+        let mut files: Vec<(PathBuf, Contents)> = Vec::new();
+        for format in &self.formats {
+            match format {
+                AovFormat::Png => {
+                    files.extend(layers.iter().map(|l| (beside(picture, l, "png"), Contents::Picture(l))))
+                }
+                AovFormat::Pfm => {
+                    files.extend(layers.iter().map(|l| (beside(picture, l, "pfm"), Contents::Numbers(l))))
+                }
+                AovFormat::Exr => {
+                    let file = self.file.clone().unwrap_or_else(|| picture.with_extension("aov.exr"));
+                    files.push((file, Contents::All(&layers)));
+                }
+            }
+        }
+        // All names are looked at before any file is written.
+        for (path, _) in &files {
+            check_place(path)?;
+            guard.output("--aov", path)?;
+        }
+        let expected = self.expected()?;
+        for (path, contents) in &files {
+            contents.save(path, self.quantize, expected.as_ref())?;
+            guard.written(path);
+        }
+        if !quiet {
+            let names: Vec<String> = files.iter().map(|(path, _)| visible_path(path)).collect();
+            let count = count(files.len() as u64, "file");
+            errln!("trueray: {}: {count} of values from the CPU reference: {}", visible(name), names.join(", "));
+        }
+        Ok(())
+    }
+
+    /// The reference's picture, where the device's is compared with it.
+    fn expected(&self) -> Result<Option<Picture>, Failure> {
+        if self.picture.is_none() {
+            return Ok(None);
+        }
+        let (width, height) = self.inspector.reference().size();
+        let mut rgb = vec![0; width as usize * height as usize * 3];
+        self.inspector.reference().rows(0, &mut rgb)?;
+        Ok(Some(Picture::assemble(width, height, rgb)))
+    }
+}
+
+/// `scene.normal.png` beside `scene.png`.
+fn beside(picture: &Path, layer: &Layer, ending: &str) -> PathBuf {
+    picture.with_extension(format!("{}.{ending}", layer.name))
+}
+
+/// What a file has.
+enum Contents<'a> {
+    Picture(&'a Layer),
+    Numbers(&'a Layer),
+    All(&'a [Layer]),
+}
+
+impl Contents<'_> {
+    fn save(&self, path: &Path, quantize: Quantize, expected: Option<&Picture>) -> Result<(), Failure> {
+        let target = Target::File(path.to_owned());
+        match self {
+            Self::Picture(layer) => layer.picture(quantize, expected).save(&target, Format::Png)?,
+            Self::Numbers(layer) => {
+                let Layer { width, height, values, .. } = layer;
+                save_bytes(&target, &encode_pfm(*width, *height, layer.channels(), values))?;
+            }
+            Self::All(layers) => {
+                let Some(Layer { width, height, .. }) = layers.first() else { return Ok(()) };
+                let channels = layers.iter().flat_map(channels).collect();
+                let file = encode_exr(*width, *height, channels)
+                    .map_err(|why| Failure::new(OUTPUT, format!("cannot write {}: {why}", path.display())))?;
+                save_bytes(&target, &file)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The channels of a layer, each for itself.
+fn channels(layer: &Layer) -> Vec<(String, Vec<f32>)> {
+    let names = layer.channel_names();
+    let of = |channel| layer.values.iter().copied().skip(channel).step_by(layer.channels()).collect();
+    names.into_iter().enumerate().map(|(channel, name)| (name, of(channel))).collect()
+}
+
+impl From<TooMany> for Failure {
+    fn from(too_many: TooMany) -> Self {
+        Self::new(USAGE, too_many.to_string())
+    }
+}

@@ -1,0 +1,269 @@
+//! `trueray render --aov`: intermediate values add up to the picture and are written as documented.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, read};
+use tempfile::TempDir;
+use trueray::aov::{Aov, Layer, MAX_BOUNCES, TooMany, layers};
+use trueray::cpu::{PixelRecord, picked};
+use trueray::effects::Effects;
+use trueray::film::Picture;
+use trueray::scene::Scene;
+use trueray::settings::Settings;
+
+use crate::pixel::{inspector, places, same, scenes};
+use crate::support::{gpu, root, scene, scene_of};
+
+/// The terms of a pixel with one sample, added in the documented order: ambient; of each light diffuse, specular; background; each
+/// bounce.
+fn sum(record: &PixelRecord) -> [f64; 3] {
+    let [sample] = &record.samples[..] else { panic!("several samples") };
+    let (first, bounces) = sample.rays.split_first().unwrap();
+    let mut terms = vec![first.hit.as_ref().map_or([0.0; 3], |hit| hit.ambient)];
+    for light in first.hit.iter().flat_map(|hit| &hit.lights) {
+        terms.extend([light.diffuse, light.specular]);
+    }
+    terms.push(first.background.unwrap_or_default());
+    terms.extend(bounces.iter().map(|ray| ray.contribution));
+    terms.into_iter().reduce(|sum, term| std::array::from_fn(|c| sum[c] + term[c])).unwrap()
+}
+
+#[test]
+fn terms_add_up_to_the_very_colour_on_all_scenes() {
+    let mut bounces = 0;
+    for (name, scene) in scenes(200) {
+        for settings in [Settings::classic(), Settings::exact()] {
+            let (inspector, reference) = inspector(&scene, &settings);
+            for [x, y] in places(&scene).step_by(if settings == Settings::classic() { 1 } else { 7 }) {
+                let record = inspector.pixel(x, y).unwrap();
+                let (sum, color) = (sum(&record), reference.color(x, y).unwrap().to_array());
+                assert!(same(sum, color), "{name}, x {x}, y {y}: {sum:?} for {color:?}");
+                bounces += record.samples[0].rays.len() - 1;
+            }
+        }
+    }
+    assert!(bounces > 1000, "{bounces}");
+}
+
+/// The layers of these kinds.
+fn layers_of(scene: &Scene, settings: &Settings, wanted: &[Aov]) -> Result<Vec<Layer>, TooMany> {
+    layers(&inspector(scene, settings).0, scene.lights.len(), settings.quantize, wanted, None)
+}
+
+fn small(name: &str) -> Scene {
+    let mut scene = scene(&root().join("scenes").join(name));
+    (scene.width, scene.height) = (24, 18);
+    scene
+}
+
+#[test]
+fn layers_are_what_the_tracer_has_calculated() {
+    use Aov::{Bounce, Color, Diffuse, Inside, NDotL, Normal, Position, Rays, Shadow, Sphere, Step, T, Tests};
+    let (scene, settings) = (small("effects/everything.txt"), Settings::classic());
+    let wanted =
+        [Color, T, Sphere, Inside, Position, Normal, NDotL, Shadow, Diffuse, Bounce, Rays, Tests, Step, Aov::Margin];
+    let all = layers_of(&scene, &settings, &wanted).unwrap();
+    let layer = |name: &str| all.iter().find(|layer| layer.name == name).unwrap_or_else(|| panic!("{name}"));
+    let one = |name: &str, [x, y]: [u32; 2]| layer(name).values[(y * scene.width + x) as usize];
+    let three = |name: &str, [x, y]: [u32; 2]| layer(name).values.as_chunks::<3>().0[(y * scene.width + x) as usize];
+    let (inspector, reference) = inspector(&scene, &settings);
+    let viewed = scene.viewed(&settings);
+    let mut hits = 0;
+    for place in places(&scene) {
+        let [x, y] = place;
+        let record = inspector.pixel(x, y).unwrap();
+        assert_eq!(three("color", place), reference.color(x, y).unwrap().to_array().map(|c| c as f32));
+        match picked(&viewed, x, y) {
+            None => assert_eq!((one("sphere", place), one("t", place)), (-1.0, f32::INFINITY)),
+            Some(hit) => {
+                hits += 1;
+                assert_eq!(one("sphere", place), hit.sphere as f32);
+                assert!((f64::from(one("t", place)) / hit.t - 1.0).abs() < 1e-6);
+                assert_eq!(one("inside", place) == 1.0, hit.inside);
+                let off = three("position", place).into_iter().zip(hit.position.to_array());
+                assert!(off.map(|(a, b)| (f64::from(a) - b).abs()).fold(0.0, f64::max) < 1e-5, "{place:?}");
+                let normal = three("normal", place);
+                assert!((normal.iter().map(|x| x * x).sum::<f32>() - 1.0).abs() < 1e-6);
+                let light = &record.samples[0].rays[0].hit.as_ref().unwrap().lights[0];
+                assert_eq!(one("n-dot-l-0", place), light.n_dot_l as f32);
+                let blocked = light.shadow.as_ref().is_some_and(|shadow| shadow.blocked);
+                assert_eq!(one("shadow-0", place) == 1.0, blocked);
+                assert_eq!(three("diffuse-0", place), light.diffuse.map(|c| c as f32));
+            }
+        }
+        for (index, ray) in record.samples[0].rays.iter().enumerate().skip(1) {
+            assert_eq!(three(&format!("bounce-{index}"), place), ray.contribution.map(|c| c as f32));
+        }
+        let nearest =
+            record.decisions.iter().find(|margin| margin.decision != trueray::cpu::Decision::QuantisationStep);
+        assert_eq!(one("margin", place), nearest.map_or(f32::INFINITY, |margin| margin.margin as f32));
+        let tests: u64 = record.samples[0]
+            .rays
+            .iter()
+            .map(|ray| {
+                let shadows = ray.hit.iter().flat_map(|hit| &hit.lights).flat_map(|light| &light.shadow);
+                ray.test_count + shadows.map(|shadow| shadow.test_count).sum::<u64>()
+            })
+            .sum();
+        assert_eq!(one("tests", place), tests as f32);
+    }
+    assert!(hits > 50, "{hits}");
+    // As many rays as the reference counts.
+    let tally = reference.rows(0, &mut vec![0; (scene.width * scene.height * 3) as usize]).unwrap();
+    let rays: f32 = layer("rays").values.iter().sum();
+    assert_eq!(rays as u64, tally.primary + tally.shadow + tally.reflection);
+}
+
+#[test]
+fn too_many_bounces_are_refused() {
+    let corridor = "SPHERE a 0 0 0 20 20 20 1 1 1 0.1 0 0 1 1\nAMBIENT 1 1 1\n";
+    let mut scene = scene_of(corridor);
+    (scene.width, scene.height) = (2, 2);
+    let settings = Settings { max_depth: 80, ..Settings::classic() };
+    assert_eq!(layers_of(&scene, &settings, &[Aov::Bounce]), Err(TooMany::Bounces(80)));
+    assert!(layers_of(&scene, &settings, &[Aov::T]).is_ok());
+    let settings = Settings { max_depth: MAX_BOUNCES as u32, ..settings };
+    assert_eq!(layers_of(&scene, &settings, &[Aov::Bounce]).unwrap().len(), MAX_BOUNCES);
+}
+
+/// A folder with `scene.txt` in it, where the program runs.
+struct Folder(TempDir);
+
+impl Folder {
+    fn new(scene: &str) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("scene.txt"), scene).unwrap();
+        Self(folder)
+    }
+
+    fn run(&self, arguments: &str) -> Output {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_trueray"));
+        command.args(arguments.split_whitespace()).current_dir(self.0.path()).stdin(Stdio::null());
+        command.output().unwrap()
+    }
+
+    fn path(&self, name: &str) -> std::path::PathBuf {
+        self.0.path().join(name)
+    }
+}
+
+#[track_caller]
+fn assert_exit(output: &Output, code: i32, message: &str) {
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{stderr}");
+    assert!(stderr.contains(message), "expected '{message}' in:\n{stderr}");
+}
+
+const SCENE: &str = "NEAR 1\nLEFT -1\nRIGHT 1\nBOTTOM -1\nTOP 1\nRES 5 3\nSPHERE s 0 0.5 -2 1 1 1 1 0.5 0 0.5 0.5 0.5 0.5 4\n\
+                     LIGHT a 2 2 0 1 1 1\nLIGHT b -2 2 0 0.5 0.5 0.5\nAMBIENT 1 1 1\nBACK 0 0 1\n";
+
+/// A PFM file: kind, columns, rows, and numbers in reading order.
+fn read_pfm(path: &Path) -> (String, [usize; 2], Vec<f32>) {
+    let file = fs::read(path).unwrap();
+    let mut lines = file.splitn(4, |&byte| byte == b'\n');
+    let mut line = || String::from_utf8(lines.next().unwrap().to_vec()).unwrap();
+    let (kind, size, scale) = (line(), line(), line());
+    assert_eq!(scale, "-1.0", "little-endian");
+    let size: Vec<usize> = size.split(' ').map(|side| side.parse().unwrap()).collect();
+    let numbers: Vec<f32> =
+        lines.next().unwrap().as_chunks::<4>().0.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();
+    let row = numbers.len() / size[1];
+    (kind, [size[0], size[1]], numbers.chunks(row).rev().flatten().copied().collect())
+}
+
+#[test]
+fn files_are_written_beside_the_picture() {
+    let place = Folder::new(SCENE);
+    let list = "t,normal,diffuse,bounce,color";
+    let output = place.run(&format!("render --device cpu scene.txt -o out.ppm --aov {list} --aov-format png,pfm,exr"));
+    assert_exit(&output, 0, "13 files of values from the CPU reference: out.color.png");
+    let scene = trueray::scene::parse("scene.txt", SCENE.as_bytes()).scene.unwrap();
+    use Aov::{Bounce, Color, Diffuse, Normal, T};
+    let expected = layers_of(&scene, &Settings::classic(), &[T, Normal, Diffuse, Bounce, Color]).unwrap();
+    let names: Vec<_> = expected.iter().map(|layer| layer.name.as_str()).collect();
+    assert_eq!(names, ["color", "t", "normal", "diffuse-0", "diffuse-1", "bounce-1"]);
+    for layer in &expected {
+        let (kind, size, values) = read_pfm(&place.path(&format!("out.{}.pfm", layer.name)));
+        assert_eq!((kind.as_str(), size), (if layer.channels() == 3 { "PF" } else { "Pf" }, [5, 3]));
+        assert_eq!(values, layer.values, "{}", layer.name);
+    }
+    // The colour is the picture's, and scales are as documented.
+    let picture = |name: &str| Picture::read(place.path(name)).unwrap();
+    assert_eq!(picture("out.color.png").rgb(), picture("out.ppm").rgb());
+    let (normals, normal) = (&expected[2].values, picture("out.normal.png"));
+    for (values, pixel) in normals.as_chunks::<3>().0.iter().zip(normal.pixels()) {
+        let level = |x: f32| (255.0 * (0.5 * f64::from(x) + 0.5) + 0.5) as u8;
+        assert_eq!(*pixel, if *values == [0.0; 3] { [0; 3] } else { values.map(level) });
+    }
+    let times = picture("out.t.png");
+    let least = expected[1].values.iter().copied().fold(f32::INFINITY, f32::min);
+    for (&t, pixel) in expected[1].values.iter().zip(times.pixels()) {
+        assert_eq!(*pixel, [(255.0 * f64::from(least) / f64::from(t) + 0.5) as u8; 3]);
+    }
+
+    let file = read().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes();
+    let file = file.from_file(place.path("out.aov.exr")).unwrap();
+    let channels = &file.layer_data[0].channel_data.list;
+    let channel = |name: &str| {
+        let channel =
+            channels.iter().find(|channel| channel.name.to_string() == name).unwrap_or_else(|| panic!("{name}"));
+        let FlatSamples::F32(values) = &channel.sample_data else { panic!("{name} is not of 32 bits") };
+        values.clone()
+    };
+    assert_eq!(channels.len(), 16);
+    assert_eq!(channel("t"), expected[1].values);
+    for (index, name) in ["R", "G", "B"].into_iter().enumerate() {
+        assert_eq!(channel(name), expected[0].values.iter().skip(index).step_by(3).copied().collect::<Vec<_>>());
+    }
+    assert_eq!(channel("normal.Y"), normals.iter().skip(1).step_by(3).copied().collect::<Vec<_>>());
+    assert_eq!(channel("diffuse-1.B"), expected[4].values.iter().skip(2).step_by(3).copied().collect::<Vec<_>>());
+}
+
+#[test]
+fn one_file_can_have_any_name_and_the_rest_is_refused() {
+    let place = Folder::new(SCENE);
+    assert_exit(
+        &place.run("render --device cpu scene.txt -o - --aov all --aov-file values.exr"),
+        0,
+        "1 file of values",
+    );
+    let first = fs::read(place.path("values.exr")).unwrap();
+    assert_exit(&place.run("render --device cpu scene.txt -o - --aov all --aov-file values.exr"), 0, "");
+    assert!(first == fs::read(place.path("values.exr")).unwrap(), "other bytes");
+    for (arguments, code, message) in [
+        ("scene.txt -o out.png --aov depth", 2, "possible values"),
+        ("scene.txt -o - --aov t", 2, "--aov writes beside the picture"),
+        ("scene.txt -o out.png --aov error", 2, "--aov error is of a device's picture"),
+        ("scene.txt scene.txt -o . --aov t --aov-file values.exr", 2, "--aov-file takes one scene"),
+        ("scene.txt -o out.png --aov t --aov-file scene.txt", 6, "an input of this run"),
+        ("scene.txt -o out.png --aov t --aov-file out.png", 6, "which the picture of scene.txt writes"),
+        ("scene.txt -o out.png --aov-format exr", 2, "--aov"),
+    ] {
+        assert_exit(&place.run(&format!("render --device cpu {arguments}")), code, message);
+    }
+}
+
+/// Of a device: its levels less the reference's.
+#[test]
+fn errors_are_those_of_the_devices_picture() {
+    let Some(_gpu) = gpu("aov::errors_are_those_of_the_devices_picture") else { return };
+    // Fast rounds light that hardly changes over some levels.
+    let scene = SCENE.replace("RES 5 3", "RES 60 40");
+    let place = Folder::new(&scene);
+    let output = place
+        .run("render --device gpu --precision fast --verify 0 scene.txt -o out.png --aov error --aov-format pfm,png");
+    assert_exit(&output, 0, "2 files of values from the CPU reference");
+    let scene = trueray::scene::parse("scene.txt", scene.as_bytes()).scene.unwrap();
+    let viewed = scene.viewed(&Settings::classic());
+    let reference = trueray::cpu::Reference::<f64>::new(&viewed, &Effects::of(&viewed));
+    let mut expected = vec![0; 60 * 40 * 3];
+    reference.rows(0, &mut expected).unwrap();
+    let picture = Picture::read(place.path("out.png")).unwrap();
+    let (_, _, errors) = read_pfm(&place.path("out.error.pfm"));
+    for ((&level, &expected), error) in picture.rgb().iter().zip(&expected).zip(errors) {
+        assert_eq!(f32::from(level) - f32::from(expected), error);
+    }
+    assert_eq!(Picture::read(place.path("out.error.png")).unwrap().pixel_count(), 60 * 40);
+}
