@@ -14,16 +14,13 @@ impl Layer {
         {
             return heat;
         }
-        let rgb: Vec<[u8; 3]> = match self.channels() {
-            3 => {
-                let triples = self.values.as_chunks::<3>().0;
-                let scale = self.triple_scale(quantize);
-                triples.iter().map(|triple| scale(triple.map(f64::from))).collect()
-            }
-            _ => {
-                let scale = self.scale();
-                self.values.iter().map(|&value| scale(f64::from(value))).collect()
-            }
+        let rgb: Vec<[u8; 3]> = if self.channels() == 3 {
+            let triples = self.values.as_chunks::<3>().0;
+            let scale = self.triple_scale(quantize);
+            triples.iter().map(|triple| scale(triple.map(f64::from))).collect()
+        } else {
+            let scale = self.scale();
+            self.values.iter().map(|&value| scale(f64::from(value))).collect()
         };
         Picture::assemble(self.width, self.height, rgb.into_flattened())
     }
@@ -45,8 +42,8 @@ impl Layer {
             Aov::Sphere => Box::new(of_index),
             Aov::NDotL => Box::new(|cosine| if cosine < 0.0 { [0, 0, level(-cosine)] } else { grey(cosine) }),
             Aov::Rays | Aov::Tests => Box::new(move |count| grey(count / greatest)),
-            // From 1, black, to 10⁻¹⁶, white.
-            Aov::Margin => Box::new(|margin| grey(-margin.log10() / 16.0)),
+            // From 1, black, to 10⁻⁸, white.
+            Aov::Margin => Box::new(|margin| grey(-margin.log10() / 8.0)),
             Aov::Step => Box::new(|levels| grey(1.0 - 2.0 * levels)),
             _ => Box::new(grey),
         }
@@ -93,5 +90,5 @@ fn of_index(index: f64) -> [u8; 3] {
         return [0; 3];
     }
     let hue = (index * GOLDEN).fract() * 6.0;
-    [0.0, 2.0, 4.0].map(|offset: f64| level(0.25 + 0.75 * ((hue + offset) % 6.0 - 3.0).abs().min(2.0).max(1.0) - 0.75))
+    [0.0, 2.0, 4.0].map(|offset: f64| level(0.25 + 0.75 * (((hue + offset) % 6.0 - 3.0).abs().clamp(1.0, 2.0) - 1.0)))
 }

@@ -158,10 +158,10 @@ impl Collector {
         for format in &self.formats {
             match format {
                 AovFormat::Png => {
-                    files.extend(layers.iter().map(|l| (beside(picture, l, "png"), Contents::Picture(l))))
+                    files.extend(layers.iter().map(|l| (beside(picture, l, "png"), Contents::Picture(l))));
                 }
                 AovFormat::Pfm => {
-                    files.extend(layers.iter().map(|l| (beside(picture, l, "pfm"), Contents::Numbers(l))))
+                    files.extend(layers.iter().map(|l| (beside(picture, l, "pfm"), Contents::Numbers(l))));
                 }
                 AovFormat::Exr => {
                     let file = self.file.clone().unwrap_or_else(|| picture.with_extension("aov.exr"));

@@ -3,6 +3,7 @@
 mod after_help;
 mod aov;
 mod bench;
+mod beside;
 mod certificate;
 mod check;
 mod color;
@@ -24,6 +25,7 @@ mod render;
 mod reports;
 mod sampling;
 mod shader;
+mod show;
 mod signals;
 mod stats;
 mod stress;

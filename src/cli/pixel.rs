@@ -141,7 +141,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     if args.json {
         out!("{}", json(&report)?);
     } else {
-        print(&report, Labels { spheres: &scene.sphere_names, lights: &scene.light_names });
+        print(&report, Labels::of(scene, settings.specular));
     }
     Ok(())
 }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use super::aov::AovOptions;
+use super::beside::Beside;
 use super::certificate::CertificateFile;
 use super::failure::{Failure, OK, USAGE};
 use super::files::{check_place, json, save};
@@ -53,6 +54,9 @@ pub(super) struct Args {
     format: Option<Format>,
     #[command(flatten)]
     aov: AovOptions,
+    /// Print the picture to the terminal as well
+    #[arg(long, help_heading = "Output")]
+    show: bool,
     /// Write whatever file OUTPUT names: also a hidden one, one without a picture's ending, or over a file that is no picture
     #[arg(long, help_heading = "Output")]
     allow_any_output: bool,
@@ -224,7 +228,7 @@ fn render_one(
     let wants_stats = args.stats || args.stats_json.is_some();
     let options = Options { count_rays: wants_stats && !args.no_ray_counts, ..Options::default() };
     let verify = args.verify.unwrap_or_else(|| Verify::usual(scene));
-    let mut aov = args.aov.of(&viewed, &effects, gpu.is_some())?;
+    let mut beside = Beside::new(&args.aov, args.show, &viewed, &effects, gpu.is_some())?;
     let mut renderer = match choice {
         None => Renderer::Whole(Engine::verified(backend, viewed, &effects, &options, verify)?),
         Some(choice) => Renderer::InPart(Engine::verified(backend, viewed, &effects, &options, verify)?, choice),
@@ -247,7 +251,7 @@ fn render_one(
             let picture = render_partial(engine, backend, &samples, fill, |part| progress.set(part))?;
             let start = Instant::now();
             writer.write_rows(&picture.rgb)?;
-            aov.iter_mut().for_each(|aov| aov.add(&picture.rgb));
+            beside.add(&picture.rgb);
             write_time += start.elapsed();
             let pixels = samples.pixels().len() as u64;
             sampled = Some(Sampled { density, fill, pixels, fill_ms: picture.fill_ms });
@@ -258,7 +262,7 @@ fn render_one(
             writer.write_rows(band.rgb)?;
             write_time += start.elapsed();
             certificate.add(band.rgb);
-            aov.iter_mut().for_each(|aov| aov.add(band.rgb));
+            beside.add(band.rgb);
             let rows = band.rgb.len() / (width as usize * 3);
             progress.set((f64::from(band.first) + rows as f64) / f64::from(height));
             Ok::<_, Failure>(())
@@ -273,16 +277,12 @@ fn render_one(
     progress.finish();
     write_time += finishing.elapsed();
 
-    if let Some(aov) = aov {
-        aov.write(&loaded.name, target.argument(), guard, args.quiet)?;
-    }
+    beside.finish(&loaded.name, &target, guard, args.quiet)?;
     certificate.write((settings, &effects), gpu, &selection, stages)?;
     if cut > 0 && !args.quiet {
         say_cut(&loaded.name, cut, &device_name(gpu));
     }
-    if not_finite > 0 {
-        errln!("trueray: {}: not finite (NaN or infinity): {}", visible(&loaded.name), count(not_finite, "pixel"));
-    }
+    say_not_finite(&loaded.name, not_finite);
     let stats = Stats {
         scene: loaded.name.clone(),
         output: target.to_string(),
@@ -357,6 +357,9 @@ fn target(args: &Args, loaded: &Loaded) -> Target {
 /// The scene with its target, if that can take a picture.
 fn job(args: &Args, loaded: Loaded, target: Target) -> Result<Job, Failure> {
     args.aov.check(&target)?;
+    if args.show && target == Target::Stdout {
+        return Err(Failure::new(USAGE, "--show prints to standard output, which the picture is written to"));
+    }
     if let Target::File(path) = &target {
         if folder(args).is_some() && !args.allow_any_output {
             check_named(path).map_err(|failure| failure.of(&loaded.name))?;
@@ -381,6 +384,13 @@ fn say_cut(name: &str, cut: u64, device: &str) {
         visible(name),
         count(cut, "pixel")
     );
+}
+
+/// Says of how many pixels the colour is no number, if of any.
+fn say_not_finite(name: &str, pixels: u64) {
+    if pixels > 0 {
+        errln!("trueray: {}: not finite (NaN or infinity): {}", visible(name), count(pixels, "pixel"));
+    }
 }
 
 /// Says what is simulated and sampled by which tier, and what the device brings of its own.

@@ -1,4 +1,4 @@
-//! OpenEXR: many named channels of numbers in one file.
+//! EXR: many named channels of numbers in one file.
 
 use std::io::Cursor;
 

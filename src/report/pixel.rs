@@ -5,20 +5,28 @@ use std::fmt::Write as _;
 use crate::cpu::{
     HitRecord, LightRecord, Margin, PixelRecord, RayKind, RayRecord, SampleRecord, ShadowRecord, TestRecord, Verdict,
 };
-use crate::scene::Names;
+use crate::scene::{Names, Scene};
+use crate::settings::Specular;
 use crate::words::{count, number};
 
 /// Tests of a ray that are listed at the most; those that hit come first.
 const LISTED: usize = 12;
 
-/// The labels of a scene.
+/// What a table takes from the scene and its settings.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Labels<'a> {
     pub(crate) spheres: &'a Names,
     pub(crate) lights: &'a Names,
+    /// Whose cosine the specular term is a power of.
+    pub(crate) specular: Specular,
 }
 
-impl Labels<'_> {
+impl<'a> Labels<'a> {
+    /// Of `scene`.
+    pub(crate) fn of(scene: &'a Scene, specular: Specular) -> Self {
+        Self { spheres: &scene.sphere_names, lights: &scene.light_names, specular }
+    }
+
     fn sphere(&self, index: usize) -> String {
         label(self.spheres, "sphere", index)
     }
@@ -183,7 +191,11 @@ fn push_light(text: &mut String, light: &LightRecord, labels: Labels) {
     }
     if let Some(cosine) = light.specular_cosine {
         row(text, "    diffuse", &numbers(&light.diffuse));
-        row(text, "    specular", &format!("{}, of the cosine {}", numbers(&light.specular), number(cosine)));
+        let name = match labels.specular {
+            Specular::Phong => "R·V",
+            Specular::Blinn => "N·H",
+        };
+        row(text, "    specular", &format!("{}, of {name} {}", numbers(&light.specular), number(cosine)));
     }
 }
 

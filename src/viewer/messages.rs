@@ -137,6 +137,8 @@ pub struct PickedPixel<'a> {
     pub rgb: Option<[u8; 3]>,
     /// What its ray meets first; none is the background.
     pub hit: Option<PickedHit<'a>>,
+    /// All its rays as `trueray pixel` prints them; none of a scene with so many spheres that it takes long.
+    pub table: Option<String>,
 }
 
 /// A sphere that a pixel shows.

@@ -175,12 +175,12 @@ fn read_pfm(path: &Path) -> (String, [usize; 2], Vec<f32>) {
 
 #[test]
 fn files_are_written_beside_the_picture() {
+    use Aov::{Bounce, Color, Diffuse, Normal, T};
     let place = Folder::new(SCENE);
     let list = "t,normal,diffuse,bounce,color";
     let output = place.run(&format!("render --device cpu scene.txt -o out.ppm --aov {list} --aov-format png,pfm,exr"));
     assert_exit(&output, 0, "13 files of values from the CPU reference: out.color.png");
     let scene = trueray::scene::parse("scene.txt", SCENE.as_bytes()).scene.unwrap();
-    use Aov::{Bounce, Color, Diffuse, Normal, T};
     let expected = layers_of(&scene, &Settings::classic(), &[T, Normal, Diffuse, Bounce, Color]).unwrap();
     let names: Vec<_> = expected.iter().map(|layer| layer.name.as_str()).collect();
     assert_eq!(names, ["color", "t", "normal", "diffuse-0", "diffuse-1", "bounce-1"]);

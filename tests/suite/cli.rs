@@ -74,6 +74,17 @@ fn one_argument_writes_output_into_the_working_directory() {
     assert_eq!(place.files(), ["scene.txt"]);
 }
 
+/// Two rows of pixels a line, to their side the messages.
+#[test]
+fn a_picture_is_shown_in_the_terminal() {
+    let place = Folder::new(SCENE);
+    let shown = stdout(place.run("render --device cpu scene.txt --show"));
+    assert_eq!((shown.lines().count(), shown.matches('▀').count()), (4, 16 * 4), "{shown}");
+    assert!(shown.starts_with("\x1b[38;2;0;0;255m\x1b[48;2;0;0;255m▀"), "{shown:?}");
+    assert!(place.files().contains(&"out.ppm".to_owned()));
+    assert_exit(&place.run("render --device cpu scene.txt -o - --show"), 2, "--show prints to standard output");
+}
+
 #[test]
 fn without_output_the_scene_names_the_picture() {
     let place = Folder::new(&SCENE.replace("OUTPUT out.ppm\n", ""));

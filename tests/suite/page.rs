@@ -24,7 +24,8 @@ fn messages() -> BTreeMap<&'static str, Value> {
     state["error"] = to_value(SceneError { line: 9, text: "LAMP".into() }).unwrap();
     state["problem"] = "the depth is 1000 at the most".into();
     let hit = PickedHit { sphere: 0, name: "a", t: 8.0, position: [0.0; 3], inside: false };
-    let pixel = PageMessage::Pixel(PickedPixel { x: 1, y: 2, rgb: Some([3; 3]), hit: Some(hit) });
+    let pixel =
+        PageMessage::Pixel(PickedPixel { x: 1, y: 2, rgb: Some([3; 3]), hit: Some(hit), table: Some(String::new()) });
     let cost = EffectTimes { effect: Effect::Shadows, with_ms: 2.0, without_ms: 1.0 };
     let told = |message: &PageMessage| to_value(message).unwrap();
     BTreeMap::from([

@@ -68,7 +68,7 @@ impl Search<'_> {
         if let Some(own) = self.own.filter(|own| own.shape == shape.index) {
             if own.inside {
                 let t = exit_of(own, ray.direction, shape);
-                add(Decision::Epsilon, self.from_start(t, sphere), sphere);
+                add(Decision::Epsilon, self.distance_from_start(t, sphere), sphere);
                 if let Some(margin) = tie(t).filter(|_| t > range.t_min && !is_hit) {
                     add(Decision::Tie, margin, sphere);
                 }
@@ -89,9 +89,9 @@ impl Search<'_> {
         match least_of(both, range) {
             _ if is_hit => {
                 add(Decision::Silhouette, clearance, sphere);
-                add(at_min, self.from_start(both.0, sphere), sphere);
+                add(at_min, self.distance_from_start(both.0, sphere), sphere);
                 if hit.is_some_and(|hit| hit.inside) {
-                    add(at_min, self.from_start(both.1, sphere), sphere);
+                    add(at_min, self.distance_from_start(both.1, sphere), sphere);
                 }
             }
             Some((t, is_greater)) => {
@@ -99,18 +99,18 @@ impl Search<'_> {
                     add(Decision::Tie, margin, sphere);
                 }
                 if is_greater {
-                    add(at_min, self.from_start(both.0, sphere), sphere);
+                    add(at_min, self.distance_from_start(both.0, sphere), sphere);
                 }
             }
             None => {
                 let last = if range.greater { both.1 } else { both.0 };
-                add(at_min, self.from_start(last, sphere), sphere);
+                add(at_min, self.distance_from_start(last, sphere), sphere);
             }
         }
     }
 
     /// How far a root lies from where roots begin to count.
-    fn from_start(&self, t: f64, sphere: usize) -> f64 {
+    fn distance_from_start(&self, t: f64, sphere: usize) -> f64 {
         let distance = (t - self.range.t_min).abs();
         match self.stretch {
             Some(stretch) => distance * stretch,
@@ -133,7 +133,7 @@ pub(super) fn shadow_margin(
     own: &Own<f64>,
     is_blocked: bool,
 ) -> Option<(f64, usize)> {
-    let (mut clearest, mut nearest): (Option<(f64, usize)>, Option<(f64, usize)>) = (None, None);
+    let (mut clearest, mut nearest) = (None::<(f64, usize)>, None::<(f64, usize)>);
     for &sphere in &distinct.0 {
         let Some((blocks, margin)) = crossing(ray, &world.shapes[sphere], own, world.shadow_t_min) else { continue };
         if blocks && clearest.is_none_or(|(known, _)| margin > known) {

@@ -1,11 +1,13 @@
 //! What a page asks for besides a picture: a pixel, a file, a measurement.
 
 use super::coarse::{coarse_engine, with_size};
+use super::reduced::MANY_SPHERES;
 use super::{Context, FRAME_MS, SessionRenderer};
-use crate::cpu::picked;
+use crate::cpu::{Inspector, picked};
 use crate::engine::{Backend, Engine, Options};
 use crate::film::encode_png;
 use crate::gpu;
+use crate::report::{Labels, pixel_table};
 use crate::viewer::effect_cost::CostMeasurement;
 use crate::viewer::messages::{PageMessage, PickedHit, PickedPixel};
 use crate::viewer::patch::PICTURE_FILE;
@@ -53,7 +55,14 @@ impl SessionRenderer<'_> {
             let start = (y as usize * width as usize + x as usize) * 3;
             [rgb[start], rgb[start + 1], rgb[start + 2]]
         });
-        let hit = with_size(context.scene, job.size, |scene| picked(&scene.viewed(&job.settings), x, y));
+        let (hit, record) = with_size(context.scene, job.size, |scene| {
+            let viewed = scene.viewed(&job.settings);
+            let is_quick = scene.spheres.len() <= MANY_SPHERES;
+            let record = is_quick.then(|| Inspector::new(&viewed, &job.effects).pixel(x, y)).flatten();
+            (picked(&viewed, x, y), record)
+        });
+        let labels = Labels::of(context.scene, job.settings.specular);
+        let table = record.map(|record| pixel_table(&record, labels));
         let names = &context.scene.sphere_names;
         let hit = hit.map(|hit| PickedHit {
             sphere: hit.sphere,
@@ -62,7 +71,7 @@ impl SessionRenderer<'_> {
             position: hit.position.to_array(),
             inside: hit.inside,
         });
-        self.session.send(&PageMessage::Pixel(PickedPixel { x, y, rgb, hit }));
+        self.session.send(&PageMessage::Pixel(PickedPixel { x, y, rgb, hit, table }));
     }
 
     /// Takes the next step of a measurement, if there is one.

@@ -1,0 +1,49 @@
+//! What a run makes of a picture besides its file: intermediate values, and a view in the terminal.
+
+use super::aov::{AovOptions, Collector};
+use super::failure::Failure;
+use super::guard::Guard;
+use super::show::show;
+use crate::effects::Effects;
+use crate::film::{Picture, Target};
+use crate::viewed::ViewedScene;
+
+/// What is wanted of one picture, whose rows come one after another.
+#[derive(Debug)]
+pub(super) struct Beside {
+    size: (u32, u32),
+    aov: Option<Collector>,
+    /// The rows so far, where the picture is to be shown.
+    shown: Option<Vec<u8>>,
+}
+
+impl Beside {
+    pub(super) fn new(
+        aov: &AovOptions,
+        shows: bool,
+        viewed: &ViewedScene,
+        effects: &Effects,
+        has_device: bool,
+    ) -> Result<Self, Failure> {
+        let size = (viewed.scene().width, viewed.scene().height);
+        Ok(Self { size, aov: aov.of(viewed, effects, has_device)?, shown: shows.then(Vec::new) })
+    }
+
+    /// Takes the next rows, 3 bytes a pixel.
+    pub(super) fn add(&mut self, rgb: &[u8]) {
+        if let Some(aov) = &mut self.aov {
+            aov.add(rgb);
+        }
+        if let Some(shown) = &mut self.shown {
+            shown.extend_from_slice(rgb);
+        }
+    }
+
+    /// All rows are there, in the file that `target` names.
+    pub(super) fn finish(self, name: &str, target: &Target, guard: &mut Guard, quiet: bool) -> Result<(), Failure> {
+        if let Some(rgb) = self.shown {
+            show(&Picture::assemble(self.size.0, self.size.1, rgb))?;
+        }
+        self.aov.map_or(Ok(()), |aov| aov.write(name, target.argument(), guard, quiet))
+    }
+}
