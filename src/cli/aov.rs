@@ -84,10 +84,12 @@ enum AovFormat {
 }
 
 impl AovOptions {
-    /// Refuses one file for the values of several scenes.
-    pub(super) fn check_scenes(&self, scenes: usize) -> Result<(), Failure> {
-        let is_one_file = scenes > 1 && self.aov_file.is_some();
-        if is_one_file { Err(Failure::new(USAGE, "--aov-file takes one scene")) } else { Ok(()) }
+    /// Refuses one file for the values of several scenes, and one that the run has another use for.
+    pub(super) fn check_file(&self, scenes: usize, guard: &mut Guard) -> Result<(), Failure> {
+        if scenes > 1 && self.aov_file.is_some() {
+            return Err(Failure::new(USAGE, "--aov-file takes one scene"));
+        }
+        guard.options([("--aov-file", &self.aov_file)])
     }
 
     /// Refuses what cannot be written beside the picture.
@@ -170,9 +172,13 @@ impl Collector {
             }
         }
         // All names are looked at before any file is written.
+        guard.written(picture);
         for (path, _) in &files {
             check_place(path)?;
-            guard.output("--aov", path)?;
+            if self.file.is_none() {
+                guard.output("--aov", path)?;
+            }
+            guard.check_unwritten("--aov", path)?;
         }
         let expected = self.expected()?;
         for (path, contents) in &files {

@@ -100,10 +100,10 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
         return Err(Failure::new(USAGE, "several scenes need a folder for -o, or none"));
     }
     check_certificate(args)?;
-    args.aov.check_scenes(args.scenes.len())?;
     let settings = args.picture.settings()?;
     let mut guard = Guard::new(&args.scenes);
     guard.options([("--certificate", &args.certificate)])?;
+    args.aov.check_file(args.scenes.len(), &mut guard)?;
     if let Some(path) = args.stats_json.as_deref().filter(|path| *path != Path::new("-")) {
         check_place(path)?;
         guard.output("--stats-json", path)?;

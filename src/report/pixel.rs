@@ -44,7 +44,8 @@ fn label(names: &Names, noun: &str, index: usize) -> String {
 
 /// `1, 0.5, -2`.
 pub(crate) fn numbers(values: &[f64]) -> String {
-    values.iter().map(|&value| number(value)).collect::<Vec<_>>().join(", ")
+    // Without the sign of 0.
+    values.iter().map(|&value| number(value + 0.0)).collect::<Vec<_>>().join(", ")
 }
 
 /// All rays of a pixel, then its colour and what decides it.
@@ -200,7 +201,7 @@ fn push_light(text: &mut String, light: &LightRecord, labels: Labels) {
 }
 
 fn decision(margin: &Margin, labels: Labels) -> String {
-    let mut words = format!("{:<28} {:<20}", margin.decision.name(), number(margin.margin));
+    let mut words = format!("{:<28} {:<22} ", margin.decision.name(), number(margin.margin));
     let places = [
         margin.sample.map(|sample| format!("sample {sample}")),
         margin.ray.map(|ray| format!("ray {ray}")),

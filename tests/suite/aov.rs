@@ -238,7 +238,7 @@ fn one_file_can_have_any_name_and_the_rest_is_refused() {
         ("scene.txt -o out.png --aov error", 2, "--aov error is of a device's picture"),
         ("scene.txt scene.txt -o . --aov t --aov-file values.exr", 2, "--aov-file takes one scene"),
         ("scene.txt -o out.png --aov t --aov-file scene.txt", 6, "an input of this run"),
-        ("scene.txt -o out.png --aov t --aov-file out.png", 6, "which the picture of scene.txt writes"),
+        ("scene.txt -o out.png --aov t --aov-file out.png", 6, "which --aov-file writes"),
         ("scene.txt -o out.png --aov-format exr", 2, "--aov"),
     ] {
         assert_exit(&place.run(&format!("render --device cpu {arguments}")), code, message);

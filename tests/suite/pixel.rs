@@ -4,7 +4,7 @@ use std::fs;
 use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
-use trueray::cpu::{Decision, Inspector, PixelRecord, RayKind, Reference, SampleRecord, Verdict};
+use trueray::cpu::{Decision, Inspector, PixelRecord, RayKind, Reference, SampleRecord, ShadowRecord, Verdict};
 use trueray::effects::Effects;
 use trueray::film::Picture;
 use trueray::scene::{Scene, parse};
@@ -130,10 +130,11 @@ fn the_record_is_in_the_units_of_the_file() {
             let (Some(hit), Some(other)) = (&ray.hit, &other.hit) else { continue };
             assert_eq!(times(hit.position, factor), other.position);
             assert_eq!((hit.t / along * factor, hit.normal, hit.view), (other.t, other.normal, other.view));
-            assert_eq!(
-                hit.lights[0].shadow.as_ref().unwrap().direction.map(|x| x * factor),
-                other.lights[0].shadow.as_ref().unwrap().direction
-            );
+            let shadows = hit.lights.iter().zip(&other.lights).map(|(light, other)| [&light.shadow, &other.shadow]);
+            for [shadow, other] in shadows {
+                let direction = |shadow: &Option<ShadowRecord>| shadow.as_ref().map(|shadow| shadow.direction);
+                assert_eq!(direction(shadow).map(|v| times(v, factor)), direction(other), "{factor}");
+            }
         }
     }
     // The eye elsewhere: the same place in the world.
@@ -158,7 +159,8 @@ fn the_coefficients_are_those_of_the_specification() {
     let test = ray.tests.iter().find(|test| test.sphere == 0).unwrap();
     assert_eq!((test.a, test.b, test.c, test.discriminant), (1.0, -5.0, 24.0, 1.0));
     assert_eq!((test.roots, test.verdict), (Some([4.0, 6.0]), Verdict::LesserTaken));
-    assert_eq!(ray.t_min, 1.000_001);
+    // No sphere reaches the image plane.
+    assert_eq!(ray.t_min, 0.0);
     let hit = ray.hit.as_ref().unwrap();
     assert_eq!((hit.position, hit.normal, hit.view), ([0.0, 0.0, -4.0], [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]));
     let to_light = DVec3::new(3.0, 3.0, 4.0).normalize();
@@ -169,6 +171,12 @@ fn the_coefficients_are_those_of_the_specification() {
     assert_eq!((mirrored.kind, mirrored.parent, mirrored.weight), (RayKind::Reflection, Some(0), 0.5));
     assert_eq!((mirrored.direction, mirrored.t_min, mirrored.hit.is_none()), ([0.0, 0.0, 1.0], 1e-3, true));
     assert_eq!(mirrored.background, None);
+    let cut = scene_of("SPHERE s 0 0 -2 1.5 1.5 1.5 1 1 1 1 0 0 0 1\nAMBIENT 1 1 1\n");
+    let record = inspector(&cut, &Settings::classic()).0.pixel(20, 20).unwrap();
+    let ray = &record.samples[0].rays[0];
+    assert_eq!((ray.t_min, ray.tests[0].roots), (1.000_001, Some([0.5, 3.5])));
+    assert_eq!(ray.tests[0].verdict, Verdict::GreaterTaken);
+    assert!(ray.hit.as_ref().is_some_and(|hit| hit.inside && hit.normal == [0.0, 0.0, 1.0]));
 }
 
 /// A scene with a decision in the pixel that it is about, and how far that is from the other answer.
@@ -287,7 +295,7 @@ fn each_decision_is_shown_with_its_margin() {
         assert_eq!(found["margin"].as_f64(), Some(nearest.margin));
         let table = text(&pixel(&scene, "scene.txt 4 4 --device cpu", true));
         let line = table.lines().rfind(|line| line.trim_start().starts_with(name)).unwrap_or_else(|| panic!("{table}"));
-        let shown: f64 = line[2 + 28..].split_whitespace().next().unwrap().parse().unwrap();
+        let shown: f64 = line.trim_start()[name.len()..].split_whitespace().next().unwrap().parse().unwrap();
         assert!((shown / nearest.margin - 1.0).abs() < 1e-9, "{line}");
         assert!(table.contains("none, the CPU alone: --device cpu"), "{table}");
     }

@@ -86,26 +86,22 @@ impl Search<'_> {
             }
             return;
         };
-        match least_of(both, range) {
+        let starts = match least_of(both, range) {
             _ if is_hit => {
                 add(Decision::Silhouette, clearance, sphere);
-                add(at_min, self.distance_from_start(both.0, sphere), sphere);
-                if hit.is_some_and(|hit| hit.inside) {
-                    add(at_min, self.distance_from_start(both.1, sphere), sphere);
-                }
+                [Some(both.0), hit.filter(|hit| hit.inside).map(|_| both.1)]
             }
             Some((t, is_greater)) => {
                 if let Some(margin) = tie(t) {
                     add(Decision::Tie, margin, sphere);
                 }
-                if is_greater {
-                    add(at_min, self.distance_from_start(both.0, sphere), sphere);
-                }
+                [is_greater.then_some(both.0), None]
             }
-            None => {
-                let last = if range.greater { both.1 } else { both.0 };
-                add(at_min, self.distance_from_start(last, sphere), sphere);
-            }
+            None => [Some(both.1), None],
+        };
+        // Where no sphere reaches the image plane, nothing is decided there.
+        for t in starts.into_iter().flatten().filter(|_| range.greater) {
+            add(at_min, self.distance_from_start(t, sphere), sphere);
         }
     }
 
