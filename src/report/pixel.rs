@@ -62,7 +62,7 @@ pub(crate) fn pixel_table(record: &PixelRecord, labels: Labels) -> String {
         row(&mut text, "colour", &format!("{}: the mean of the samples", numbers(&record.color)));
     }
     let [red, green, blue] = record.levels;
-    row(&mut text, "levels", &format!("{red}, {green}, {blue}"));
+    row(&mut text, "levels", &format!("{red}, {green}, {blue}: {} without their fractions", numbers(&record.scaled)));
     text += "decisions         nearest first, by the change that turns them\n";
     for margin in &record.decisions {
         let _ = writeln!(text, "  {}", decision(margin, labels));

@@ -90,6 +90,7 @@ fn the_record_is_the_pictures_on_all_scenes() {
                 let color = reference.color(x, y).unwrap().to_array();
                 assert!(same(record.color, color), "{place}: {:?} for {color:?}", record.color);
                 assert_eq!(record.levels, picture.pixel(x, y), "{place}");
+                assert_eq!(record.scaled.map(|level| level as u8), record.levels, "{place}");
                 assert_eq!(record.samples.len(), settings.samples_per_side.pow(2) as usize);
                 record.samples.iter().for_each(|sample| assert_consistent(sample, &place));
             }

@@ -75,10 +75,12 @@ impl Inspector {
         if !is_constant {
             least.add(step_margin(color, self.reference.quantize));
         }
+        let Reference { quantize, .. } = self.reference;
         PixelRecord {
             samples,
             color: color.to_f64().to_array(),
-            levels: Levels::new(self.reference.quantize).levels(color),
+            scaled: color.to_f64().to_array().map(|c| quantize.scale() * c.clamp(0.0, 1.0) + quantize.bias()),
+            levels: Levels::new(quantize).levels(color),
             decisions: least.sorted(),
         }
     }

@@ -11,6 +11,8 @@ pub struct PixelRecord {
     pub samples: Vec<SampleRecord>,
     /// The unclamped colour: the mean of the samples.
     pub color: [f64; 3],
+    /// That within 0..=1, as a level with its fraction, which is cut off.
+    pub scaled: [f64; 3],
     /// The levels.
     pub levels: [u8; 3],
     /// Of each kind of decision the one that the least change would turn, nearest first.
