@@ -143,6 +143,10 @@ test('a click tells what a pixel shows, and the picture is saved as render write
   const { x, y, rgb } = await page.evaluate(() => window.trueray.pixel);
   const picture = rendered(place.path, 'scene.txt');
   assert.deepEqual(rgb, [...picture.rgb.subarray((y * picture.width + x) * 3, (y * picture.width + x) * 3 + 3)]);
+  const mark = await page.locator('#mark').boundingBox();
+  assert.ok(Math.abs(mark.x + mark.width / 2 - box.x - (x + 0.5) * box.width / picture.width) < 1, JSON.stringify(mark));
+  assert.ok(Math.abs(mark.y + mark.height / 2 - box.y - (y + 0.5) * box.height / picture.height) < 1, JSON.stringify(mark));
+  assert.match(await page.locator('#table').textContent(), /taken: the least root that counts/);
 
   await page.locator('#measure').click();
   await page.locator('.cost', { hasText: /(costs|saves) / }).nth(6).waitFor({ timeout: 60000 });

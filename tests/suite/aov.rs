@@ -156,7 +156,7 @@ fn assert_exit(output: &Output, code: i32, message: &str) {
     assert!(stderr.contains(message), "expected '{message}' in:\n{stderr}");
 }
 
-const SCENE: &str = "NEAR 1\nLEFT -1\nRIGHT 1\nBOTTOM -1\nTOP 1\nRES 5 3\nSPHERE s 0 0.5 -2 1 1 1 1 0.5 0 0.5 0.5 0.5 0.5 4\n\
+const SCENE: &str = "NEAR 1\nLEFT -1\nRIGHT 1\nBOTTOM -1\nTOP 1\nRES 5 4\nSPHERE s 0 0.5 -2 1 1 1 1 0.5 0 0.5 0.5 0.5 0.5 4\n\
                      LIGHT a 2 2 0 1 1 1\nLIGHT b -2 2 0 0.5 0.5 0.5\nAMBIENT 1 1 1\nBACK 0 0 1\n";
 
 /// A PFM file: kind, columns, rows, and numbers in reading order.
@@ -186,7 +186,7 @@ fn files_are_written_beside_the_picture() {
     assert_eq!(names, ["color", "t", "normal", "diffuse-0", "diffuse-1", "bounce-1"]);
     for layer in &expected {
         let (kind, size, values) = read_pfm(&place.path(&format!("out.{}.pfm", layer.name)));
-        assert_eq!((kind.as_str(), size), (if layer.channels() == 3 { "PF" } else { "Pf" }, [5, 3]));
+        assert_eq!((kind.as_str(), size), (if layer.channels() == 3 { "PF" } else { "Pf" }, [5, 4]));
         assert_eq!(values, layer.values, "{}", layer.name);
     }
     // The colour is the picture's, and scales are as documented.
@@ -250,7 +250,7 @@ fn one_file_can_have_any_name_and_the_rest_is_refused() {
 fn errors_are_those_of_the_devices_picture() {
     let Some(_gpu) = gpu("aov::errors_are_those_of_the_devices_picture") else { return };
     // Fast rounds light that hardly changes over some levels.
-    let scene = SCENE.replace("RES 5 3", "RES 60 40");
+    let scene = SCENE.replace("RES 5 4", "RES 60 40");
     let place = Folder::new(&scene);
     let output = place
         .run("render --device gpu --precision fast --verify 0 scene.txt -o out.png --aov error --aov-format pfm,png");
