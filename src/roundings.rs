@@ -15,6 +15,8 @@ pub(crate) const PLACE_CARRIED: f64 = 1.25;
 pub(crate) const LOCAL: f64 = 4.0;
 /// Beside these of an ellipsoid: its axes as inputs, and a product, for a place and for a direction.
 pub(crate) const AXES: f64 = 4.5;
+/// Of the place of the closest approach along the ray, where it is not measured: a scalar product, quotients and products.
+pub(crate) const ALONG: f64 = 14.0;
 /// Of a squared radius less a squared distance near it, as a part of twice the radius squared: an input counts twice, then two products,
 /// sums of three, a difference.
 pub(crate) const SQUARE: f64 = 5.0;

@@ -58,7 +58,7 @@ impl Acceleration {
     /// Likewise, as fine as `density` says.
     pub fn with_density(viewed: &ViewedScene, effects: EffectSet, rounding: Rounding, density: &Density) -> Self {
         let (scene, camera) = (viewed.scene(), Camera::new(viewed));
-        let enclosure = Enclosure::new(scene, effects.has(Effect::Ellipsoids), rounding);
+        let enclosure = Enclosure::new(viewed, effects.has(Effect::Ellipsoids), rounding);
         let lights: Vec<DVec3> = scene.lights.iter().map(|light| light.position).collect();
         let lit = effects.has(Effect::Shadows);
         let spheres = scene.spheres.len();
@@ -78,7 +78,7 @@ impl Acceleration {
 
     /// The grid alone.
     pub fn grid_of(viewed: &ViewedScene, effects: EffectSet, rounding: Rounding, density: &Density) -> Option<Grid> {
-        let enclosure = Enclosure::new(viewed.scene(), effects.has(Effect::Ellipsoids), rounding);
+        let enclosure = Enclosure::new(viewed, effects.has(Effect::Ellipsoids), rounding);
         Self::grid_in(&enclosure, effects, rounding, density)
     }
 

@@ -43,6 +43,7 @@ mod phong;
 mod pictures;
 #[cfg(feature = "view")]
 mod preview;
+mod proof;
 mod rays;
 mod refraction;
 mod sampling;
