@@ -21,7 +21,6 @@ mod drivers;
 mod effects;
 mod explain;
 mod export;
-mod families;
 mod files;
 mod film;
 mod fuzz;
