@@ -43,7 +43,7 @@ pub struct Acceleration {
     pub allowance: f64,
     /// Likewise one to a light.
     pub light_allowance: f64,
-    /// Where rays have cones, a ball around all spheres.
+    /// Middle of a ball around all spheres.
     pub middle: DVec3,
     /// Its radius.
     pub extent: f64,
@@ -62,7 +62,7 @@ impl Acceleration {
         let lights: Vec<DVec3> = scene.lights.iter().map(|light| light.position).collect();
         let lit = effects.has(Effect::Shadows);
         let spheres = scene.spheres.len();
-        let (middle, extent) = if rounding.cones { enclosure.ball() } else { Default::default() };
+        let (middle, extent) = enclosure.ball();
         let for_lights = enclosure.with_room(LIGHT_ROOM, rounding);
         let entries = density.entries_of_a_light(spheres, lights.len());
         Self {

@@ -53,9 +53,14 @@ pub(crate) struct Bound<T, const PROOF: bool> {
     cone: Cone<T>,
     /// Of the refraction rays that wait.
     waiting: Vec<(Cone<T>, T)>,
-    /// The width of the cone at t is `base` + |t|·`slope`, in world units.
+    /// The width of the cone at t is `base` + |t|·`slope`, in world units;
     base: T,
     slope: T,
+    /// and in a proof no greater than this at any sphere.
+    wide: T,
+    /// A ball around all spheres, for that.
+    middle: Vec3<T>,
+    extent: T,
     /// Of the search in hand: the least distance at which any ray of the cone may meet a sphere, and the least of another one;
     first: T,
     second: T,
@@ -86,8 +91,8 @@ pub(crate) struct Bound<T, const PROOF: bool> {
 }
 
 impl<T: Real, const PROOF: bool> Bound<T, PROOF> {
-    /// Of a primary ray whose direction is known to `direction`.
-    pub(crate) fn new(world: &World<T>, direction: T) -> Self {
+    /// Of rays in `world`, none of which has begun.
+    pub(crate) fn new(world: &World<T>) -> Self {
         let (zero, u) = (T::ZERO, T::from_f64(T::UNIT));
         // The host rounds decimals, and moves the eye to the origin.
         let of_host = T::UNIT.min(Scalar::Double.unit());
@@ -97,10 +102,13 @@ impl<T: Real, const PROOF: bool> Bound<T, PROOF> {
             local: T::from_f64(if world.ellipsoids { LOCAL + AXES + SQUARE } else { LOCAL + SQUARE }) * u,
             center: if world.ellipsoids { u } else { zero },
             moved: T::from_f64(world.moved * (of_host / Scalar::Double.unit())),
-            cone: Cone { position: zero, direction },
+            cone: Cone { position: zero, direction: zero },
             waiting: Vec::new(),
             base: zero,
             slope: zero,
+            wide: zero,
+            middle: world.middle,
+            extent: world.extent,
             first: T::FAR,
             second: T::FAR,
             first_shape: None,
@@ -118,6 +126,18 @@ impl<T: Real, const PROOF: bool> Bound<T, PROOF> {
             sizes: zero,
             unsure: None,
         }
+    }
+
+    /// Begins with a primary ray whose direction is known to `direction`.
+    #[inline]
+    pub(crate) fn begin(&mut self, direction: T) {
+        self.cone = Cone { position: T::ZERO, direction };
+        self.waiting.clear();
+        self.is_begun = false;
+        self.throughput = T::ONE;
+        self.color = T::ZERO;
+        self.sizes = T::ZERO;
+        self.unsure = None;
     }
 
     #[inline]
@@ -140,14 +160,11 @@ impl<T: Real, const PROOF: bool> Bound<T, PROOF> {
     /// How far the discriminant may be off where the line is about a radius from the centre.
     #[inline]
     pub(super) fn reach(&self, shape: &Shape<T>, at: &Approach<T>) -> T {
-        // The product is at hand from the approach.
-        self.reach_at(shape, if PROOF { at.b * (T::ONE / at.a) } else { at.b / at.a })
-    }
-
-    /// Likewise, of a line whose closest point is at `t`.
-    #[inline]
-    fn reach_at(&self, shape: &Shape<T>, t: T) -> T {
-        let width = self.width(shape, t);
+        let width = if PROOF {
+            largest(shape.inv_scale) * self.wide + self.local * shape.radius
+        } else {
+            self.width(shape, at.b / at.a)
+        };
         two::<T>() * width * (shape.radius + width)
     }
 
@@ -209,13 +226,15 @@ impl<T: Real, const PROOF: bool> Bound<T, PROOF> {
         two::<T>() * (place + T::from_f64(3.0) * shape.radius * (stretch * self.slope / length)) / length
     }
 
-    /// What is known of the surface of a true sphere, in a proof: as for any, where lengths are known beforehand or have simple bounds.
+    /// What is known of the surface in a proof: in object space, where lengths are known beforehand or have simple bounds.
     #[inline]
-    fn sphere(&mut self, world: &World<T>, hit: &Hit<T>, at: &Approach<T>) {
+    fn proven_surface(&mut self, world: &World<T>, hit: &Hit<T>, at: &Approach<T>) {
         let shape = &world.shapes[hit.sphere];
-        let (stretch, greatest, radius) = (shape.inv_scale.x, world.materials[hit.sphere].scale.x, shape.radius);
+        let (stretch, greatest) = (largest(shape.inv_scale), largest(world.materials[hit.sphere].scale));
+        let radius = shape.radius;
         let way = size(at.origin) + radius;
-        let stretched = stretch * (self.base + hit.t.abs() * self.slope) + self.place * way + self.local * radius;
+        let world_width = self.base + hit.t.abs() * self.slope + self.center * size(shape.center);
+        let stretched = stretch * world_width + self.place * way + self.local * radius;
         let reach = two::<T>() * stretched * (radius + stretched);
         let rest = at.discriminant - reach;
         let aside = if rest > T::ZERO {
@@ -224,8 +243,9 @@ impl<T: Real, const PROOF: bool> Bound<T, PROOF> {
             T::from_f64(ROOT_AT_EDGE) * reach.sqrt() + stretched
         };
         let along = aside + self.roundings(ALONG) * (way + radius);
-        // The radius is at least 1.
-        self.normal = along + self.roundings(ANGLE);
+        // The radius is at least 1, and so the gradient no shorter than the least stretch.
+        let turned = if world.ellipsoids { along * stretch / least(shape.inv_scale) } else { along };
+        self.normal = turned + self.roundings(ANGLE);
         let place = size(shape.center) + greatest * radius;
         self.cone.position = greatest * along + self.roundings(ANGLE) * place + self.moved;
     }
@@ -276,6 +296,12 @@ impl<T: Real, const PROOF: bool> Witness<T> for Bound<T, PROOF> {
         } else {
             self.base = self.cone.position + self.moved + place * origin;
             self.slope = length * (self.cone.direction + place);
+        }
+        if PROOF {
+            // No sphere is farther from where the ray begins; a shadow ray ends at t = 1.
+            let ahead = two::<T>() * self.extent + size(ray.origin - self.middle);
+            let along = if light { self.slope } else { ahead * (self.cone.direction + place) };
+            self.wide = self.base + along + self.center * (ahead + origin);
         }
         (self.first, self.second) = (T::FAR, T::FAR);
         (self.error, self.exit) = (T::ZERO, T::ZERO);
@@ -356,8 +382,7 @@ impl<T: Real, const PROOF: bool> Witness<T> for Bound<T, PROOF> {
     #[inline]
     fn crossed(&mut self, _ray: &Ray<T>, shape: &Shape<T>, crossing: &Crossing<T>, blocks: bool, t_min: T) -> bool {
         let Crossing { at, start_squared, end_squared } = crossing;
-        // In a proof the end's width does for all of the way.
-        let reach = if PROOF { self.reach_at(shape, T::ONE) } else { self.reach(shape, at) };
+        let reach = self.reach(shape, at);
         if at.discriminant < -reach {
             return false;
         }
@@ -389,10 +414,7 @@ impl<T: Real, const PROOF: bool> Witness<T> for Bound<T, PROOF> {
         // Lists of spheres take a ray for what it is but for so much.
         let width = match &hit {
             Some(hit) => self.base + hit.t.abs() * self.slope,
-            None if PROOF => {
-                let ahead = world.extent + size(ray.origin - world.middle);
-                self.base + ahead * (self.cone.direction + self.place)
-            }
+            None if PROOF => self.wide,
             None => {
                 let along = (ray.origin - world.middle).dot(ray.direction) / length(ray.direction);
                 self.base + max(world.extent - along, T::ZERO) * (self.cone.direction + self.place)
@@ -412,8 +434,8 @@ impl<T: Real, const PROOF: bool> Witness<T> for Bound<T, PROOF> {
     }
 
     fn surface(&mut self, world: &World<T>, ray: &Ray<T>, hit: &Hit<T>, at: &Approach<T>, surface: &Surface<T>) {
-        if PROOF && !world.ellipsoids {
-            self.sphere(world, hit, at);
+        if PROOF {
+            self.proven_surface(world, hit, at);
             return;
         }
         let shape = &world.shapes[hit.sphere];
@@ -432,9 +454,6 @@ impl<T: Real, const PROOF: bool> Witness<T> for Bound<T, PROOF> {
             // w/|N·d| with N·d = √(a·discriminant)/|g|, of the least discriminant.
             let slant = length(ray.direction) / (at.a * rest).sqrt();
             slant * (T::from_f64(0.5) * reach)
-        } else if PROOF {
-            // The ray meets the sphere: half the chord is good to the root of its square's error.
-            greatest * (T::from_f64(ROOT_AT_EDGE) * reach.sqrt() + stretched)
         } else {
             self.mark(Decision::Silhouette);
             T::FAR
@@ -452,9 +471,6 @@ impl<T: Real, const PROOF: bool> Witness<T> for Bound<T, PROOF> {
         self.normal = turned + self.roundings(ANGLE);
         let place = size(shape.center) + greatest * shape.radius;
         self.cone.position = aside + shifted + self.roundings(ANGLE) * place + self.moved;
-        if PROOF {
-            return;
-        }
         if self.is_begun {
             self.add_term(largest(absolute(world.ambient * material.color)) * material.ka.abs(), T::ZERO);
         }
@@ -569,6 +585,11 @@ impl<T: Real, const PROOF: bool> Witness<T> for Bound<T, PROOF> {
             (self.cone, self.throughput) = (cone, throughput);
         }
     }
+}
+
+/// The least component.
+fn least<T: Real>(v: Vec3<T>) -> T {
+    min(v.x, min(v.y, v.z))
 }
 
 /// Error of half a chord whose square is off by `squared`: |√x − √y| ≤ |x − y|/√x.

@@ -23,8 +23,13 @@ struct Doubt {
 }
 
 impl<T: Real> Reference<T> {
+    /// What proves the decisions of a pixel, one after the other.
+    pub(super) fn bound(&self) -> Bound<T, true> {
+        Bound::new(&self.world)
+    }
+
     /// The unclamped colour of a pixel, with each decision proven where `T` does so.
-    pub(super) fn proven_color(&self, i: u32, j: u32, tally: &mut Tally) -> Vec3<T> {
+    pub(super) fn proven_color(&self, i: u32, j: u32, bound: &mut Bound<T, true>, tally: &mut Tally) -> Vec3<T> {
         let side = self.camera.samples_per_side();
         if !T::PROVES {
             return resolve(self.primaries(i, j).map(|primary| trace(&self.world, &primary, tally)), side);
@@ -36,9 +41,9 @@ impl<T: Real> Reference<T> {
                 // No ray of the tile meets a sphere.
                 return self.world.background;
             }
-            let mut witness = (Bound::<T, true>::new(&self.world, direction), &mut *tally);
-            let color = trace(&self.world, &primary, &mut witness);
-            if witness.0.unsure.is_none() { color } else { self.color_in_dd(&primary, &mut doubt) }
+            bound.begin(direction);
+            let color = trace(&self.world, &primary, &mut (&mut *bound, &mut *tally));
+            if bound.unsure.is_none() { color } else { self.color_in_dd(&primary, &mut doubt) }
         });
         let color = resolve(samples, side);
         tally.more_bits += u64::from(doubt.in_f64);

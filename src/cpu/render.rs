@@ -64,7 +64,7 @@ impl<T: Real> Reference<T> {
     /// The unclamped colour of pixel (column `i`, row `j`); `None` where the picture has no such pixel.
     pub fn color(&self, i: u32, j: u32) -> Option<DVec3> {
         let (width, height) = self.size();
-        (i < width && j < height).then(|| self.proven_color(i, j, &mut Tally::default()).to_f64())
+        (i < width && j < height).then(|| self.proven_color(i, j, &mut self.bound(), &mut Tally::default()).to_f64())
     }
 
     /// Pixel (column `i`, row `j`) of a picture with one sample a pixel, with the bound of its error, beside a renderer whose unit roundoff
@@ -73,7 +73,8 @@ impl<T: Real> Reference<T> {
     pub fn bounded(&self, i: u32, j: u32, others: f64) -> Option<Bounded> {
         let (width, height) = self.size();
         let primary = (i < width && j < height).then(|| self.primaries(i, j).next()).flatten()?;
-        let mut bound = Bound::<T, false>::new(&self.world, T::from_f64(self.camera.direction_error(T::UNIT)));
+        let mut bound = Bound::<T, false>::new(&self.world);
+        bound.begin(T::from_f64(self.camera.direction_error(T::UNIT)));
         let color = trace(&self.world, &primary, &mut bound);
         let levels = Levels::new(self.quantize);
         let is_step = !bound.has_sure_levels(color, &levels, T::from_f64(others));
@@ -107,11 +108,11 @@ impl<T: Real> Reference<T> {
         let width = self.camera.width() as usize;
         let samples = u64::from(self.camera.samples_per_side() * self.camera.samples_per_side());
         let chunk = |(chunk, pixels): (usize, &mut [u8])| {
-            let mut tally = Tally::default();
+            let (mut tally, mut bound) = (Tally::default(), self.bound());
             for (k, pixel) in pixels.as_chunks_mut::<3>().0.iter_mut().enumerate() {
                 let index = chunk * CHUNK + k;
                 let (i, j) = ((index % width) as u32, first + (index / width) as u32);
-                let color = self.proven_color(i, j, &mut tally);
+                let color = self.proven_color(i, j, &mut bound, &mut tally);
                 tally.primary += samples;
                 tally.not_finite += u64::from(!color.to_f64().is_finite());
                 *pixel = Levels::new(self.quantize).levels(color);
@@ -131,7 +132,7 @@ impl<T: Real> Reference<T> {
         let samples = u64::from(self.camera.samples_per_side() * self.camera.samples_per_side());
         let each = |(&[i, j], target): (&[u32; 2], &mut [u8; 3])| {
             let mut tally = Tally::default();
-            let color = self.proven_color(i, j, &mut tally);
+            let color = self.proven_color(i, j, &mut self.bound(), &mut tally);
             *target = Levels::new(self.quantize).levels(color);
             let not_finite = u64::from(!color.to_f64().is_finite());
             tally.plus(Tally { primary: samples, not_finite, ..Tally::default() })

@@ -26,7 +26,9 @@ impl Ties {
     pub(super) fn new(world: &World<Dd>) -> Self {
         // A quotient of counts and a sum before it.
         let direction = Dd::from(4.0 * Dd::UNIT);
-        Self { bound: Bound::new(world, direction), hits: Vec::new(), is_blocked: false }
+        let mut bound = Bound::new(world);
+        bound.begin(direction);
+        Self { bound, hits: Vec::new(), is_blocked: false }
     }
 
     /// The least root that counts.

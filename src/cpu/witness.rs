@@ -76,7 +76,7 @@ pub(crate) trait Witness<T: Real> {
 impl<T: Real> Witness<T> for () {}
 
 /// The first decides; the second only looks on.
-impl<T: Real, A: Witness<T>, B: Witness<T>> Witness<T> for (A, &mut B) {
+impl<T: Real, A: Witness<T>, B: Witness<T>> Witness<T> for (&mut A, &mut B) {
     #[inline]
     fn search(&mut self, ray: &Ray<T>, light: bool) {
         self.0.search(ray, light);

@@ -181,8 +181,11 @@ impl Kinds {
             ("clustered", &[100, 1_000]),
             ("huge", &[10, 100, 1_000]),
         ] {
-            let family = FAMILIES.iter().find(|family| family.name == name).unwrap();
-            for &size in sizes {
+            for (family, &size) in FAMILIES
+                .iter()
+                .filter(|family| family.name == name)
+                .flat_map(|it| sizes.iter().map(move |size| (it, size)))
+            {
                 self.add(format!("bench {name} {size}"), move |_| Scene { output: None, ..family.scene(size) });
             }
         }
