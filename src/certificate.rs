@@ -1,5 +1,6 @@
 //! What a certified picture is certified by: what it is of, who calculated it, and how.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use serde::Serialize;
@@ -9,6 +10,7 @@ use sha2::{Digest, Sha256};
 use crate::effects::{EffectSet, Effects};
 use crate::engine::Stages;
 use crate::precision::Tier;
+use crate::roundings::counted;
 use crate::scene::{Names, Scene};
 use crate::settings::Settings;
 
@@ -25,6 +27,8 @@ pub struct Certificate {
     pub kernel: Option<Tier>,
     /// How many pixels are right by which stage.
     pub stages: Stages,
+    /// What the bounds of error count with, by the names of `src/roundings.rs`.
+    pub roundings: BTreeMap<String, f64>,
 }
 
 /// What a certificate is of: nobody else's picture has all of this.
@@ -141,7 +145,8 @@ fn first_difference(name: &str, certified: &Value, own: &Value) -> Option<String
 impl Certificate {
     /// Of a picture that `device` rendered.
     pub fn new(subject: Subject, device: String, kernel: Option<Tier>, stages: Stages) -> Self {
-        Self { program: concat!("trueray ", env!("CARGO_PKG_VERSION")), subject, device, kernel, stages }
+        let program = concat!("trueray ", env!("CARGO_PKG_VERSION"));
+        Self { program, subject, device, kernel, stages, roundings: counted() }
     }
 }
 

@@ -176,8 +176,9 @@ impl Report {
         outln!("picture           {}", visible(&self.picture));
         outln!("reference of      {}", visible(&self.scene));
         outln!("calculated by     {}", visible(&self.device));
-        if let Some(stages) = self.stages.filter(|_| gpu.is_some()) {
-            outln!("                  {}", stages.in_words(selection.tier));
+        if let Some(stages) = self.stages {
+            let words = if gpu.is_some() { stages.in_words(selection.tier) } else { stages.decisions_in_words() };
+            outln!("                  {words}");
         }
         match &self.certificate_mismatch {
             Some(mismatch) => outln!("certificate       of something else: {}", visible(mismatch)),

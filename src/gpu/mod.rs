@@ -32,6 +32,7 @@ pub use render::{DeviceTimes, GpuRenderer, Options, Output, Pixels, Rendered, Ro
 pub use run::echo::echo_layout;
 pub use run::fill::Reconstructor;
 pub use run::probe::{Answer, Batch, Point, ProbeRay, Prober, Question, RawBatch, Surface};
+pub use run::quotients::Quotients;
 pub use run::selftest::SelfTest;
 pub use shared::LEAST_BUFFERS;
 pub use table::layout;

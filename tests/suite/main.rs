@@ -21,7 +21,6 @@ mod drivers;
 mod effects;
 mod explain;
 mod export;
-mod families;
 mod files;
 mod film;
 mod fuzz;
@@ -43,6 +42,7 @@ mod phong;
 mod pictures;
 #[cfg(feature = "view")]
 mod preview;
+mod proof;
 mod rays;
 mod refraction;
 mod sampling;
