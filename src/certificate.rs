@@ -15,8 +15,6 @@ use crate::settings::Settings;
 /// What a certificate says.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Certificate {
-    /// The program and its version.
-    pub program: &'static str,
     #[serde(flatten)]
     subject: Subject,
     /// What rendered it, in words.
@@ -141,7 +139,7 @@ fn first_difference(name: &str, certified: &Value, own: &Value) -> Option<String
 impl Certificate {
     /// Of a picture that `device` rendered.
     pub fn new(subject: Subject, device: String, kernel: Option<Tier>, stages: Stages) -> Self {
-        Self { program: concat!("trueray ", env!("CARGO_PKG_VERSION")), subject, device, kernel, stages }
+        Self { subject, device, kernel, stages }
     }
 }
 

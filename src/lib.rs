@@ -82,6 +82,7 @@ mod hash;
 pub mod limits;
 #[doc(hidden)]
 pub mod misuse;
+mod origin;
 mod panics;
 #[doc(hidden)]
 pub mod precision;

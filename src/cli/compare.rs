@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::failure::{DIFFERENT, Failure, OK, USAGE};
-use super::files::json;
+use super::files::{json, report_json};
 use super::guard::Guard;
 use super::input::Input;
 use super::named::format_by_ending;
@@ -188,7 +188,7 @@ fn compare(args: &Args) -> Result<u8, Failure> {
         let not_finite_pixels = not_finite;
         let report =
             Report { a, b, verdict, exceeded, difference, explanation, not_finite_pixels, warnings, notes, heat_map };
-        out!("{}", json(&report)?);
+        out!("{}", report_json(&report)?);
     } else {
         out!("{}", difference.report(&visible(&a), &visible(&b)));
         for note in &notes {
