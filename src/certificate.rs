@@ -54,6 +54,11 @@ impl SceneHash {
         let sha256 = hex(Sha256::digest(plain.to_string()));
         Self { spheres: scene.spheres.len(), lights: scene.lights.len(), sha256 }
     }
+
+    /// The hash in hexadecimal digits.
+    pub fn sha256(&self) -> &str {
+        &self.sha256
+    }
 }
 
 /// What a picture is told by.
@@ -63,6 +68,13 @@ pub struct PictureHash {
     height: u32,
     /// Of its P6 file, whatever format it is stored in.
     sha256: String,
+}
+
+impl PictureHash {
+    /// The hash in hexadecimal digits.
+    pub fn sha256(&self) -> &str {
+        &self.sha256
+    }
 }
 
 /// The hash of a picture whose rows come one after another.

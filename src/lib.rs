@@ -59,6 +59,8 @@ pub mod cli;
 #[doc(hidden)]
 pub mod compare;
 #[doc(hidden)]
+pub mod conform;
+#[doc(hidden)]
 pub mod cpu;
 mod decimal;
 #[doc(hidden)]

@@ -45,6 +45,16 @@ pub(crate) fn origin() -> &'static Origin {
     &ORIGIN
 }
 
+impl Origin {
+    /// Names and values, as its JSON has them.
+    pub(crate) fn properties(&self) -> Vec<(String, String)> {
+        let Self { program, commit, build, system, cpu } = self;
+        let commit = commit.unwrap_or(NO_COMMIT);
+        let all = [("program", *program), ("commit", commit), ("build", build), ("system", system), ("cpu", cpu)];
+        all.map(|(name, value)| (name.to_owned(), value.to_owned())).to_vec()
+    }
+}
+
 impl fmt::Display for Origin {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { program, commit, build, system, cpu } = self;

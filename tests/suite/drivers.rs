@@ -46,7 +46,7 @@ fn the_same_devices_are_listed_with_all_drivers_loaded() {
 /// On a software device the cache of compiled kernels has to be asked for; it then behaves as on any other.
 #[test]
 fn compiled_kernels_are_kept_and_a_damaged_file_is_told_and_replaced() {
-    let Some(gpu) = crate::support::gpu("compiled_kernels_are_kept_and_a_damaged_file_is_told_and_replaced") else {
+    let Some(gpu) = gpu("compiled_kernels_are_kept_and_a_damaged_file_is_told_and_replaced") else {
         return;
     };
     let (index, grows) = (gpu.device.info.index, gpu.device.info.driver.contains("SwiftShader"));
@@ -155,7 +155,7 @@ fn a_device_that_is_chosen_by_mesas_variables_is_obeyed() {
 
     let layer = "/usr/share/vulkan/implicit_layer.d/VkLayer_MESA_device_select.json";
     let test = "a_device_that_is_chosen_by_mesas_variables_is_obeyed";
-    if crate::support::gpu(test).is_none() || !Path::new(layer).exists() {
+    if gpu(test).is_none() || !Path::new(layer).exists() {
         return crate::support::say_skipped(test, "no device, or Mesa's layer is not there");
     }
     let list = |choose: bool| {
