@@ -86,7 +86,7 @@ enum Command {
     /// Check on this device what each tier promises of hard cases
     #[command(after_help = after_help::STRESS)]
     Stress(stress::Args),
-    /// Check a driver: built-in scenes at every tier, and the promises; against known flaws, or beside another
+    /// Check a driver with built-in scenes and hard cases, or compare two
     #[command(after_help = after_help::CONFORM)]
     Conform(conform::Args),
     /// Measure how fast built-in scenes of growing size are rendered

@@ -138,13 +138,13 @@ pub fn diff_table(pairs: &[Pair]) -> String {
             None => lines.push((&pair.key, vec![pair])),
         }
     }
-    let mut text = row(["scene or class", "rules"], COLUMNS.map(str::to_owned));
+    let mut text = row(["scene or class", "rules"], &COLUMNS.map(str::to_owned));
     for (key, of_line) in lines {
         let cell = |tier: &str| of_line.iter().find(|pair| pair.key.tier == tier).map_or("-".into(), |pair| cell(pair));
         let cells = COLUMNS.map(cell);
         text += &match key.kind {
-            Kind::Picture => row([&key.name, &key.case], cells),
-            Kind::Promise => row([&format!("{} {}", key.name, key.case), ""], cells),
+            Kind::Picture => row([&key.name, &key.case], &cells),
+            Kind::Promise => row([&format!("{} {}", key.name, key.case), ""], &cells),
         };
     }
     for kind in [Kind::Picture, Kind::Promise] {

@@ -197,18 +197,20 @@ impl Subject {
         let by_reference = engine.stages().is_some_and(|stages| stages.kernel + stages.double == 0);
         let mut why = Vec::new();
         if facts.differing > 0 {
-            let explanation = Explanation::of(&picture, &self.expected, &self.reference, &backend.judge());
-            let named = |(decision, count): (crate::cpu::Decision, u64)| (decision.name().to_owned(), count);
-            // Of a certified picture nothing explains anything.
-            if selection.certified {
+            let first = if selection.certified {
+                // Of a certified picture nothing explains anything.
                 facts.unexplained = facts.differing;
+                self.first_differing(&picture)
             } else {
+                let explanation = Explanation::of(&picture, &self.expected, &self.reference, &backend.judge());
+                let explained = explanation.explained.into_iter();
+                facts.explained = explained.map(|(decision, count)| (decision.name().to_owned(), count)).collect();
                 facts.unexplained = explanation.unexplained;
-                facts.explained = explanation.explained.into_iter().map(named).collect();
-            }
+                explanation.listed
+            };
             if facts.unexplained > 0 {
                 why.push(format!("{} of {} differing pixels unexplained", facts.unexplained, facts.differing));
-                why.extend(explanation.listed.iter().take(TOLD).map(told));
+                why.extend(first.iter().take(TOLD).map(told));
             }
         }
         if not_finite > 0 {
@@ -234,6 +236,18 @@ impl Subject {
             },
         };
         Ok((verdict, why, facts))
+    }
+
+    /// The first pixels of a picture that are not the reference's.
+    fn first_differing(&self, picture: &Picture) -> Vec<UnexplainedPixel> {
+        let width = picture.width() as usize;
+        let pairs = picture.pixels().iter().zip(self.expected.pixels()).enumerate();
+        let differing = pairs.filter(|(_, (value, reference))| value != reference).take(TOLD);
+        let pixel = |(index, (&value, &reference)): (usize, (&[u8; 3], &[u8; 3]))| {
+            let (x, y) = ((index % width) as u32, (index / width) as u32);
+            UnexplainedPixel { x, y, value, reference }
+        };
+        differing.map(pixel).collect()
     }
 
     /// What is told of a picture, but for what explains it.

@@ -14,12 +14,14 @@ const CELL: usize = 16;
 
 /// The head of the table.
 pub fn head() -> String {
-    row(["scene or class", "rules"], COLUMNS.map(str::to_owned))
+    row(["scene or class", "rules"], &COLUMNS.map(str::to_owned))
 }
 
-pub(super) fn row(names: [&str; 2], cells: [String; 4]) -> String {
+pub(super) fn row(names: [&str; 2], cells: &[String; 4]) -> String {
     let mut text = format!("{:<1$}{2:<3$}", names[0], NAMES.0, names[1], NAMES.1);
-    cells.iter().for_each(|cell| _ = write!(text, "{cell:<CELL$}"));
+    for cell in cells {
+        let _ = write!(text, "{cell:<CELL$}");
+    }
     text.trim_end().to_owned() + "\n"
 }
 
@@ -33,7 +35,7 @@ pub fn line(checks: &[Check], baseline: &Baseline) -> String {
             .map_or_else(|| "-".to_owned(), |check| cell(check, baseline))
     };
     let rules = if first.kind == Kind::Picture { first.case.as_str() } else { "" };
-    let mut text = row([&first.name, rules], COLUMNS.map(cell));
+    let mut text = row([&first.name, rules], &COLUMNS.map(cell));
     for check in checks {
         let standing = baseline.standing(check);
         if standing != Standing::Fine {

@@ -125,7 +125,7 @@ fn known_flaws_must_still_be_flaws_and_no_others_may_be() {
     (now.checks[fixed].verdict, now.checks[new].verdict) = (Verdict::Explained, Verdict::Fail);
     let gone = now.checks.remove(gone).key;
     assert_eq!(standings(&now), BTreeSet::from(["Fixed Unexplained".to_owned(), "New Pass".to_owned()]));
-    assert_eq!(baseline.unseen(&now, |_| true), [gone.clone()]);
+    assert_eq!(baseline.unseen(&now, |_| true), std::slice::from_ref(&gone));
     assert_eq!(baseline.unseen(&now, |key| key.kind == Kind::Promise), []);
     // What people read says all of it.
     let text = summary(&now, &baseline, &[gone]);
@@ -345,7 +345,7 @@ fn the_workflow_is_understood() {
     let workflow = fs::read_to_string(root().join("examples/conform.yml")).unwrap();
     let commands: Vec<_> = workflow.lines().filter_map(|line| line.trim().strip_prefix("trueray ")).collect();
     assert!(commands.len() >= 2, "{workflow}");
-    for command in commands {
+    for command in commands.iter().filter_map(|command| command.split('>').next()) {
         assert_exit(&trueray(root(), &format!("{command} --help")).output().unwrap(), 0, "");
     }
 }

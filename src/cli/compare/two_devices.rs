@@ -102,7 +102,9 @@ pub(super) fn compare(args: &Args, devices: &[DeviceOptions; 2]) -> Result<u8, F
             out!("{}", side.explanation.report());
         }
         outln!("");
-        exceeded.iter().for_each(|limit| outln!("over the limit    {limit}"));
+        for limit in &exceeded {
+            outln!("over the limit    {limit}");
+        }
         outln!("verdict           {verdict}");
     }
     Ok(if verdict == Verdict::Different { DIFFERENT } else { OK })
