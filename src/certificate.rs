@@ -17,8 +17,6 @@ use crate::settings::Settings;
 /// What a certificate says.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Certificate {
-    /// The program and its version.
-    pub program: &'static str,
     #[serde(flatten)]
     subject: Subject,
     /// What rendered it, in words.
@@ -60,6 +58,11 @@ impl SceneHash {
         let sha256 = hex(Sha256::digest(plain.to_string()));
         Self { spheres: scene.spheres.len(), lights: scene.lights.len(), sha256 }
     }
+
+    /// The hash in hexadecimal digits.
+    pub fn sha256(&self) -> &str {
+        &self.sha256
+    }
 }
 
 /// What a picture is told by.
@@ -69,6 +72,13 @@ pub struct PictureHash {
     height: u32,
     /// Of its P6 file, whatever format it is stored in.
     sha256: String,
+}
+
+impl PictureHash {
+    /// The hash in hexadecimal digits.
+    pub fn sha256(&self) -> &str {
+        &self.sha256
+    }
 }
 
 /// The hash of a picture whose rows come one after another.
@@ -145,8 +155,7 @@ fn first_difference(name: &str, certified: &Value, own: &Value) -> Option<String
 impl Certificate {
     /// Of a picture that `device` rendered.
     pub fn new(subject: Subject, device: String, kernel: Option<Tier>, stages: Stages) -> Self {
-        let program = concat!("trueray ", env!("CARGO_PKG_VERSION"));
-        Self { program, subject, device, kernel, stages, roundings: counted() }
+        Self { subject, device, kernel, stages, roundings: counted() }
     }
 }
 

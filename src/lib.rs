@@ -59,6 +59,8 @@ pub mod cli;
 #[doc(hidden)]
 pub mod compare;
 #[doc(hidden)]
+pub mod conform;
+#[doc(hidden)]
 pub mod cpu;
 mod decimal;
 #[doc(hidden)]
@@ -82,6 +84,7 @@ mod hash;
 pub mod limits;
 #[doc(hidden)]
 pub mod misuse;
+mod origin;
 mod panics;
 #[doc(hidden)]
 pub mod precision;

@@ -1,15 +1,17 @@
 //! `trueray compare`.
 
+mod two_devices;
+
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
 use super::failure::{DIFFERENT, Failure, OK, USAGE};
-use super::files::json;
+use super::files::{json, report_json};
 use super::guard::Guard;
 use super::input::Input;
 use super::named::format_by_ending;
-use super::options::{DeviceOptions, PictureOptions, open_device};
+use super::options::{DeviceOptions, PictureOptions, SeveralDevices, open_device};
 use super::output::{errln, out, outln};
 use crate::compare::{
     Band, Difference, Explanation, Limits, SCALE, SizeMismatch, Verdict, heatmap, three_wide, verdict,
@@ -40,7 +42,7 @@ pub(super) struct Args {
     #[command(flatten)]
     picture: PictureOptions,
     #[command(flatten)]
-    device: DeviceOptions,
+    device: SeveralDevices,
     /// Write a picture of where and how much they differ
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     heatmap: Option<PathBuf>,
@@ -156,6 +158,9 @@ fn compare(args: &Args) -> Result<u8, Failure> {
     let written = [("--heatmap", &args.heatmap), ("--three-wide", &args.three_wide)];
     Guard::new(args.pictures.iter().chain(&args.scene)).options(written)?;
     written.iter().filter_map(|(_, path)| path.as_deref()).try_for_each(|path| format_by_ending(path).map(|_| ()))?;
+    if let Some(devices) = args.device.pair()? {
+        return two_devices::compare(args, &devices);
+    }
     let Pair { names: [a, b], pictures: [picture_a, picture_b], remarks, explanation, not_finite } =
         match (&args.scene, args.pictures.as_slice()) {
             (None, [a, b]) => two_pictures(args, a, b)?,
@@ -188,7 +193,7 @@ fn compare(args: &Args) -> Result<u8, Failure> {
         let not_finite_pixels = not_finite;
         let report =
             Report { a, b, verdict, exceeded, difference, explanation, not_finite_pixels, warnings, notes, heat_map };
-        out!("{}", json(&report)?);
+        out!("{}", report_json(&report)?);
     } else {
         out!("{}", difference.report(&visible(&a), &visible(&b)));
         for note in &notes {
@@ -232,19 +237,20 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Pair,
     let settings = args.picture.settings()?;
     let viewed = scene.viewed(&settings);
     let effects = args.picture.renderable_effects(&viewed)?;
+    let device = args.device.first();
     let (name, picture, not_finite, judge) = if let Some((name, encoded)) = encoded {
         let picture = decode(args, &name, encoded, "the picture", &mut remarks)?;
-        let judge = judge_of_unknown(&args.device, &viewed, &effects)?;
+        let judge = judge_of_unknown(&device, &viewed, &effects)?;
         drop(viewed);
         (name, picture, None, judge)
     } else {
         // Comparing the reference with itself would say nothing: auto means a device here.
-        let choice = if args.device.device == Choice::Auto { &Choice::Gpu } else { &args.device.device };
+        let choice = if device.device == Choice::Auto { &Choice::Gpu } else { &device.device };
         if *choice == Choice::Cpu {
             return Err(Failure::new(USAGE, "--device cpu would compare the reference with itself"));
         }
         let gpu = open_device(choice)?;
-        let selection = args.device.selection(Some(&gpu), &viewed, &effects);
+        let selection = device.selection(Some(&gpu), &viewed, &effects);
         let backend = Backend::of(Some(&gpu), &selection);
         let mut engine = Engine::new(backend, viewed, &effects)?;
         let (rgb, not_finite) = render_picture(&mut engine)?;

@@ -18,6 +18,7 @@ pub use device::error::Error;
 pub use device::info::{DeviceInfo, DeviceKind};
 pub use device::mask::Mask;
 pub use device::open::Device;
+pub use device::vulkan::VulkanInfo;
 pub use device::{calls, drivers};
 pub use facade::{Gpu, USUAL_KERNELS};
 pub use kernel::ahead::Ahead;

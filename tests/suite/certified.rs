@@ -306,7 +306,7 @@ fn a_certificate_is_of_one_picture() {
     assert_run(path, "render -q --device cpu --certificate cpu.json scene.txt -o cpu.ppm", 0, "");
     assert!(std::fs::read(path.join("a.ppm")).unwrap() == std::fs::read(path.join("cpu.ppm")).unwrap());
     let (own, cpu) = (json("a.json"), json("cpu.json"));
-    for part in ["program", "scene", "settings", "effects", "depth", "picture"] {
+    for part in ["program", "system", "cpu", "scene", "settings", "effects", "depth", "picture"] {
         assert!(own[part] == cpu[part] && !own[part].is_null(), "{part}: {own}\n{cpu}");
     }
     assert_eq!(own["device"], device);

@@ -14,6 +14,7 @@ mod certified;
 mod claims;
 mod cli;
 mod compare;
+mod conform;
 mod coverage;
 mod documents;
 mod doubts;

@@ -64,7 +64,7 @@ impl Device {
     pub fn masked(choice: &Choice, mask: &Mask) -> Result<Self, Error> {
         let (info, adapter) = chosen(choice)?;
         let offer = Offer::of(&adapter).masked(mask);
-        let info = DeviceInfo::new(info.index, adapter.get_info(), &offer);
+        let info = DeviceInfo::new(info.index, adapter.get_info(), info.vulkan, &offer);
         let opened = info.clone();
         let _call = Call::begin();
         guarded(|| Self::open_adapter(opened, &adapter, offer, mask.units_off))
