@@ -81,6 +81,8 @@ mod hash;
 #[doc(hidden)]
 pub mod limits;
 #[doc(hidden)]
+pub mod mistakes;
+#[doc(hidden)]
 pub mod misuse;
 mod panics;
 #[doc(hidden)]
