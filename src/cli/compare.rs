@@ -34,10 +34,10 @@ pub(super) struct Args {
     #[arg(long, value_name = "SCENE", help_heading = "Scene")]
     scene: Option<PathBuf>,
     /// Say which known mistake or other convention makes the picture what it is
-    #[arg(long, requires = "scene", help_heading = "Causes")]
+    #[arg(long, requires = "scene", help_heading = "Output")]
     explain: bool,
     /// List the mistakes and conventions that --explain knows
-    #[arg(long, exclusive = true, help_heading = "Causes")]
+    #[arg(long, exclusive = true, help_heading = "Output")]
     causes: bool,
     /// Repair malformed pictures instead of refusing them
     #[arg(long, help_heading = "Pictures")]
@@ -173,7 +173,9 @@ fn trouble(args: &Args, failure: Failure, diagnosis: Option<&Diagnosis>) -> u8 {
 fn compare(args: &Args) -> Result<u8, Failure> {
     if args.causes {
         let width = CAUSES.iter().map(|known| known.name.len()).max().unwrap_or(0);
-        CAUSES.iter().for_each(|Known { name, line, .. }| outln!("{name:<width$}  {line}"));
+        for Known { name, line, .. } in CAUSES {
+            outln!("{name:<width$}  {line}");
+        }
         return Ok(OK);
     }
     let written = [("--heatmap", &args.heatmap), ("--three-wide", &args.three_wide)];

@@ -310,10 +310,10 @@ pub const CAUSES: &[Known] = &[
     rule!("diffuse-missing", "the diffuse term is missing", diffuse = 0.0),
     rule!("specular-missing", "the specular term is missing", highlights = 0.0),
     known("specular-blinn", "(N·H)ⁿ in place of (R·V)ⁿ", |_, ways| {
-        ways.plain(|v| v.rules.specular = Specular::Blinn)
+        ways.plain(|v| v.rules.specular = Specular::Blinn);
     }),
     known("specular-phong", "(R·V)ⁿ in place of (N·H)ⁿ", |_, ways| {
-        ways.plain(|v| v.rules.specular = Specular::Phong)
+        ways.plain(|v| v.rules.specular = Specular::Phong);
     }),
     known("specular-not-clamped", "R·V is not clamped at 0: its even powers shine", |_, ways| {
         ways.add("negative powers kept", |v| v.rules.negative_cosine = NegativeCosine::Kept);

@@ -11,43 +11,47 @@ use super::catalogue::Way;
 use super::simplex::minimum;
 use super::variant::Variant;
 use super::world::World;
-use crate::scene::Scene;
+use crate::scene::{Scene, Sphere};
 
 /// More spheres than this are not all tried, but those that most differing pixels show.
-const SPHERES: usize = 12;
+const SPHERES: usize = 7;
 /// More lights than this are not tried.
-const LIGHTS: usize = 12;
+const LIGHTS: usize = 6;
 /// Below this part of a colour a term says too little of its coefficient.
 const LEAST_PART: f64 = 0.01;
+/// A fit that leaves less than this part of the error is refined.
+const PROMISING: f64 = 0.7;
 /// Decimals to which fitted numbers are rounded, since scenes are written by people.
 const DECIMALS: [i32; 4] = [0, 1, 2, 3];
 
-/// Every fit of a cause to what `base` leaves unexplained.
-pub(super) fn fits(case: &Case, scene: &Scene, base: &Variant, sample: &Sample) -> Vec<Way> {
-    let fitter = Fitter { case, scene, base, sample };
+/// Every fit of a cause to what `base` leaves unexplained, by a sample, and by a smaller one where many renderings are needed.
+pub(super) fn fits(case: &Case, scene: &Scene, base: &Variant, [sample, few]: [&Sample; 2]) -> Vec<Way> {
+    let fitter = Fitter { case, scene, base, sample, few };
     let spheres = fitter.suspects();
     let lights = 0..scene.lights.len().min(LIGHTS);
     let mut tasks: Vec<Task> = vec![
         Box::new(|f: &Fitter| {
-            f.linear("ambient-intensity", "", f.base.world.ambient, Arc::new(|w: &mut World, c| w.ambient = c))
+            let set: Setter = Arc::new(|w: &mut World, c| w.ambient = c);
+            f.linear("ambient-intensity", "", f.base.world.ambient, &set)
         }),
         Box::new(|f: &Fitter| {
-            f.linear("background-color", "", f.base.world.background, Arc::new(|w: &mut World, c| w.background = c))
+            let set: Setter = Arc::new(|w: &mut World, c| w.background = c);
+            f.linear("background-color", "", f.base.world.background, &set)
         }),
     ];
     for light in lights {
         tasks.push(Box::new(move |f: &Fitter| {
-            let set = Arc::new(move |w: &mut World, c| w.lights[light].intensity = c);
+            let set: Setter = Arc::new(move |w: &mut World, c| w.lights[light].intensity = c);
             let name = f.scene.light_names.in_words("light", light);
-            f.linear("light-intensity", &name, f.base.world.lights[light].intensity, set)
+            f.linear("light-intensity", &name, f.base.world.lights[light].intensity, &set)
         }));
         tasks.push(Box::new(move |f: &Fitter| f.light_moved(light)));
     }
     for sphere in spheres {
         tasks.push(Box::new(move |f: &Fitter| vec![f.missing(sphere)]));
         tasks.push(Box::new(move |f: &Fitter| {
-            let set = Arc::new(move |w: &mut World, c| w.bodies[sphere].material.color = c);
-            f.linear("sphere-color", &f.sphere_name(sphere), f.base.world.bodies[sphere].material.color, set)
+            let set: Setter = Arc::new(move |w: &mut World, c| w.bodies[sphere].material.color = c);
+            f.linear("sphere-color", &f.sphere_name(sphere), f.base.world.bodies[sphere].material.color, &set)
         }));
         tasks.push(Box::new(move |f: &Fitter| f.material(sphere)));
         tasks.push(Box::new(move |f: &Fitter| f.moved(sphere)));
@@ -58,6 +62,9 @@ pub(super) fn fits(case: &Case, scene: &Scene, base: &Variant, sample: &Sample) 
 
 type Task = Box<dyn Fn(&Fitter) -> Vec<Way> + Send + Sync>;
 
+/// A coefficient's letter and place.
+type Coefficient = (&'static str, fn(&mut Sphere) -> &mut f64);
+
 /// Puts a colour into a world.
 type Setter = Arc<dyn Fn(&mut World, DVec3) + Send + Sync>;
 
@@ -66,6 +73,8 @@ struct Fitter<'a> {
     scene: &'a Scene,
     base: &'a Variant,
     sample: &'a Sample,
+    /// For what takes many renderings.
+    few: &'a Sample,
 }
 
 /// `x` with so many decimals.
@@ -125,7 +134,7 @@ impl Fitter<'_> {
     }
 
     /// A colour in which the picture is linear: median of what the pixels ask for.
-    fn linear(&self, name: &'static str, what: &str, now: DVec3, set: Setter) -> Vec<Way> {
+    fn linear(&self, name: &'static str, what: &str, now: DVec3, set: &Setter) -> Vec<Way> {
         let (none, one) = (self.with(|w| set(w, DVec3::ZERO)), self.with(|w| set(w, DVec3::ONE)));
         let mut asked: [Vec<(f64, f64)>; 3] = Default::default();
         for &pixel in &self.sample.differing {
@@ -144,10 +153,10 @@ impl Fitter<'_> {
                 fitted[c] = median.max(0.0);
             }
         }
-        let refined = self.refined(&set, fitted);
+        let refined = self.refined(set, fitted);
         let mut ways = Vec::new();
         for value in [with_decimals(fitted), with_decimals(refined)].concat() {
-            let set = Arc::clone(&set);
+            let set = Arc::clone(set);
             let detail =
                 format!("{what}{}{} for {}", if what.is_empty() { "" } else { ": " }, in_words(value), in_words(now));
             let apply = move |v: &mut Variant| set(Arc::make_mut(&mut v.world), value);
@@ -159,7 +168,7 @@ impl Fitter<'_> {
     /// The middle of the colours around `fitted` for which the fewest pixels of the sample are off, channel by channel.
     fn refined(&self, set: &Setter, fitted: DVec3) -> DVec3 {
         let mut best = fitted;
-        let error = |color: DVec3| self.case.score(&self.with(|w| set(w, color)), &self.small()).error;
+        let error = |color: DVec3| self.case.score(&self.with(|w| set(w, color)), self.few).error;
         for c in 0..3 {
             let steps = [-0.004, -0.002, -0.001, -0.0005, 0.0, 0.0005, 0.001, 0.002, 0.004];
             let tried = steps.map(|step| {
@@ -174,17 +183,10 @@ impl Fitter<'_> {
         best
     }
 
-    /// A part of the sample, for what takes many renderings.
-    fn small(&self) -> Sample {
-        let part = |pixels: &[[u32; 2]]| pixels.iter().step_by(pixels.len().div_ceil(60).max(1)).copied().collect();
-        Sample { differing: part(&self.sample.differing), equal: part(&self.sample.equal) }
-    }
-
     /// A sphere's coefficients, one at a time.
     fn material(&self, sphere: usize) -> Vec<Way> {
         let mut ways = Vec::new();
         let now = self.base.world.bodies[sphere].material;
-        type Coefficient = (&'static str, fn(&mut crate::scene::Sphere) -> &mut f64);
         let coefficients: [Coefficient; 4] =
             [("Ka", |s| &mut s.ka), ("Kd", |s| &mut s.kd), ("Ks", |s| &mut s.ks), ("Kr", |s| &mut s.kr)];
         for (letter, of) in coefficients {
@@ -226,10 +228,9 @@ impl Fitter<'_> {
     fn moved(&self, sphere: usize) -> Vec<Way> {
         let body = self.base.world.bodies[sphere];
         let (center, scale) = (body.material.center, body.material.scale);
-        let small = self.small();
-        let error = |shift: DVec3| {
+        let error = |sample: &Sample, shift: DVec3| {
             let variant = self.with(|w| w.reshape(sphere, center + shift, scale));
-            self.case.score(&variant, &small).error
+            self.case.score(&variant, sample).error
         };
         let radius = scale.abs().max_element();
         let mut starts = vec![DVec3::ZERO];
@@ -239,7 +240,7 @@ impl Fitter<'_> {
             }
         }
         starts.extend([DVec3::Z, -DVec3::Z, 2.0 * DVec3::Z, -2.0 * DVec3::Z].map(|z| z * radius));
-        let found = best_of(starts, radius * 0.2, &error);
+        let found = self.best_of(starts, radius * 0.2, &error);
         let (unit, eye) = (self.case.stage.unit, self.case.stage.eye);
         let place = |center: DVec3| center / unit + eye;
         let mut ways = Vec::new();
@@ -256,18 +257,17 @@ impl Fitter<'_> {
     fn scaled(&self, sphere: usize) -> Vec<Way> {
         let body = self.base.world.bodies[sphere];
         let (center, scale) = (body.material.center, body.material.scale.abs());
-        let small = self.small();
         // Logarithms, so that no semi-axis vanishes.
         let size = |factors: DVec3| scale * factors.map(f64::exp);
-        let error = |factors: DVec3| {
+        let error = |sample: &Sample, factors: DVec3| {
             let variant = self.with(|w| w.reshape(sphere, center, size(factors)));
-            self.case.score(&variant, &small).error
+            self.case.score(&variant, sample).error
         };
         let steps = [-0.7, -0.4, -0.2, -0.1, -0.05, 0.05, 0.1, 0.2, 0.4, 0.7];
         let mut starts = vec![DVec3::ZERO];
         starts
             .extend(steps.iter().flat_map(|&step| [DVec3::ONE, DVec3::X, DVec3::Y, DVec3::Z].map(|axes| axes * step)));
-        let found = best_of(starts, 0.05, &error);
+        let found = self.best_of(starts, 0.05, &error);
         let unit = self.case.stage.unit;
         let mut ways = Vec::new();
         for axes in found.into_iter().flat_map(|factors| with_decimals(size(factors) / unit)) {
@@ -284,10 +284,9 @@ impl Fitter<'_> {
     /// A light elsewhere.
     fn light_moved(&self, light: usize) -> Vec<Way> {
         let now = self.base.world.lights[light].position;
-        let small = self.small();
-        let error = |shift: DVec3| {
+        let error = |sample: &Sample, shift: DVec3| {
             let variant = self.with(|w| w.lights[light].position = now + shift);
-            self.case.score(&variant, &small).error
+            self.case.score(&variant, sample).error
         };
         let bodies = &self.base.world.bodies;
         let middle = bodies.iter().map(|body| body.shape.center).sum::<DVec3>() / bodies.len().max(1) as f64;
@@ -297,7 +296,7 @@ impl Fitter<'_> {
         starts.extend([0.1, 0.3, 1.0].into_iter().flat_map(|step| directions.map(|axis| axis * reach * step)));
         // A coordinate whose sign is wrong is as likely as any small step.
         starts.extend([DVec3::X, DVec3::Y, DVec3::Z].map(|axis| -2.0 * axis * now));
-        let found = best_of(starts, reach * 0.1, &error);
+        let found = self.best_of(starts, reach * 0.1, &error);
         let (unit, eye) = (self.case.stage.unit, self.case.stage.eye);
         let place = |position: DVec3| position / unit + eye;
         let name = self.scene.light_names.in_words("light", light);
@@ -309,14 +308,20 @@ impl Fitter<'_> {
         }
         ways
     }
-}
 
-/// The least error around the best two of some starts.
-fn best_of(starts: Vec<DVec3>, step: f64, error: &impl Fn(DVec3) -> f64) -> Vec<DVec3> {
-    let mut tried: Vec<(f64, DVec3)> = starts.into_iter().map(|start| (error(start), start)).collect();
-    tried.sort_by(|a, b| a.0.total_cmp(&b.0));
-    tried.truncate(2);
-    tried.into_iter().map(|(_, start)| minimum(start, step, error)).collect()
+    /// The least error around the best two of some starts, the first of which is right; where it is promising, by more pixels.
+    fn best_of(&self, starts: Vec<DVec3>, step: f64, error: &impl Fn(&Sample, DVec3) -> f64) -> Vec<DVec3> {
+        let mut tried: Vec<(f64, DVec3)> = starts.into_iter().map(|start| (error(self.few, start), start)).collect();
+        let now = tried.first().map_or(0.0, |tried| tried.0);
+        tried.sort_by(|a, b| a.0.total_cmp(&b.0));
+        tried.truncate(2);
+        let refined = |start: DVec3| {
+            let found = minimum(start, step, |x| error(self.few, x));
+            let is_promising = error(self.few, found) < PROMISING * now;
+            if is_promising { minimum(found, step * 0.1, |x| error(self.sample, x)) } else { found }
+        };
+        tried.into_iter().map(|(_, start)| refined(start)).collect()
+    }
 }
 
 /// The value with as much weight below as above.

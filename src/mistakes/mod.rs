@@ -166,7 +166,9 @@ pub fn plants(viewed: &ViewedScene, effects: &Effects) -> Vec<(&'static str, Str
 pub fn planted(viewed: &ViewedScene, effects: &Effects, chosen: &[usize]) -> Picture {
     with_ways(viewed, effects, |right, ways| {
         let mut variant = right.clone();
-        chosen.iter().for_each(|&index| (ways[index].apply)(&mut variant));
+        for &index in chosen {
+            (ways[index].apply)(&mut variant);
+        }
         let stage = Stage::new(viewed, right.size);
         let [width, height] = right.size;
         let pixels = (0..height).flat_map(|j| (0..width).map(move |i| [i, j]));

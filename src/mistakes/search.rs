@@ -14,6 +14,10 @@ use super::variant::{Border, Variant};
 const FIRST: [usize; 2] = [600, 100];
 /// Likewise every pair.
 const PAIR: usize = 40;
+/// Likewise every rendering of a fit,
+const FIT: [usize; 2] = [80, 24];
+/// which is to take no longer than this, in seconds.
+const FIT_SECONDS: f64 = 2e-4;
 /// Likewise the best of them.
 const SECOND: usize = 4000;
 /// Causes that a pair may begin with: as many by the pixels that they leave and as many by the sum of all differences.
@@ -110,7 +114,8 @@ pub(super) fn search(case: &Case, right: &Right) -> Option<Found> {
     let full = case.sample(((20.0 / seconds) as usize / FINALISTS / 2).max(SECOND));
     let base = right.variant;
 
-    let mut singles = screened(case, base, known.iter().map(|way| vec![way]).collect(), &first);
+    let alone = known.iter().filter(|way| makes_the_size(right, way.name)).map(|way| vec![way]);
+    let mut singles = screened(case, base, alone.collect(), &first);
     sort(&mut singles, before);
     let finalists = finals(case, base, &singles, &second, &full);
     if case.exactly {
@@ -119,13 +124,15 @@ pub(super) fn search(case: &Case, right: &Right) -> Option<Found> {
     }
     let explains =
         |finalists: &[Hypothesis]| finalists.first().is_some_and(|best| best.score.left <= (before * GOOD).max(1.0));
-    if explains(&finalists) {
+    if explains(&finalists) || singles.is_empty() {
         return found(case, base, &full, finalists);
     }
-    let fitted = fits(case, right.scene, base, &first);
+    let fewer = case.sample(((FIT_SECONDS / seconds) as usize).clamp(FIT[1], FIT[0]));
+    let fits_alone = right.other_size.is_none();
+    let fitted = if fits_alone { fits(case, right.scene, base, [&first, &fewer]) } else { Vec::new() };
     singles.extend(screened(case, base, fitted.iter().map(|way| vec![way]).collect(), &first));
     let specks = specks();
-    singles.extend(screened(case, base, vec![vec![&specks]], &first));
+    singles.extend(screened(case, base, if fits_alone { vec![vec![&specks]] } else { Vec::new() }, &first));
     sort(&mut singles, before);
     let mut finalists = finals(case, base, &singles, &second, &full);
     let best = finalists.first().map_or(before, |best| best.score.left);
@@ -139,7 +146,7 @@ pub(super) fn search(case: &Case, right: &Right) -> Option<Found> {
     let simple: Vec<&Way> = known.iter().filter(|way| is_simple(way)).collect();
     let fits_of_many = singles.iter().map(|single| single.ways[0]).filter(|way| is_fitted(way.name)).take(FITS);
     let all: Vec<&Way> = simple.iter().copied().chain(fits_of_many).collect();
-    let writers = simple.iter().copied().filter(|way| is_writer(way));
+    let writers = simple.iter().copied().filter(|way| fits_alone && is_writer(way));
     let mut tried = HashSet::new();
     let mut specs = Vec::new();
     for a in beginners.iter().copied().chain(writers) {
@@ -161,7 +168,7 @@ pub(super) fn search(case: &Case, right: &Right) -> Option<Found> {
         .map(|&way| {
             let mut base = right.variant.clone();
             (way.apply)(&mut base);
-            (way, fits(case, right.scene, &base, &first))
+            (way, fits(case, right.scene, &base, [&first, &fewer]))
         })
         .collect();
     for (way, fits) in &completed {
@@ -192,7 +199,9 @@ fn seconds_a_pixel(case: &Case, right: &Variant) -> f64 {
 fn screened<'w>(case: &Case, right: &Variant, specs: Vec<Vec<&'w Way>>, sample: &Sample) -> Vec<Hypothesis<'w>> {
     let each = |ways: Vec<&'w Way>| {
         let mut variant = right.clone();
-        ways.iter().for_each(|way| (way.apply)(&mut variant));
+        for way in &ways {
+            (way.apply)(&mut variant);
+        }
         let score = case.score(&variant, sample);
         Hypothesis { ways, variant, score }
     };
@@ -247,6 +256,16 @@ fn beginners<'w>(singles: &[Hypothesis<'w>]) -> Vec<&'w Way> {
     picked
 }
 
+/// Whether a cause can be why a picture has the size that it has.
+fn makes_the_size(right: &Right, name: &str) -> bool {
+    let [width, height] = right.variant.size;
+    right.other_size.is_none_or(|shown| match name {
+        "size-off-by-one" => true,
+        "transposed" | "rotated-90" | "written-by-columns" => shown == [height, width],
+        _ => false,
+    })
+}
+
 /// Whether a cause changes how pixels are written.
 fn is_writer(way: &Way) -> bool {
     const FIRST_OF_OTHERS: &str = "ambient-missing";
@@ -295,14 +314,13 @@ fn found(case: &Case, right: &Variant, full: &Sample, hypotheses: Vec<Hypothesis
         is_equal,
         variant: variant.clone(),
     };
-    let mut causes: Vec<Part> = match best.ways[..] {
-        [way] => vec![part(way, share(left), false, &best.variant)],
-        _ => {
-            let of = |(index, way): (usize, &&Way)| {
-                part(way, ((without(index) - left) / before).clamp(0.0, 1.0), false, &best.variant)
-            };
-            best.ways.iter().enumerate().map(of).collect()
-        }
+    let mut causes: Vec<Part> = if let [way] = best.ways[..] {
+        vec![part(way, share(left), false, &best.variant)]
+    } else {
+        let of = |(index, way): (usize, &&Way)| {
+            part(way, ((without(index) - left) / before).clamp(0.0, 1.0), false, &best.variant)
+        };
+        best.ways.iter().enumerate().map(of).collect()
     };
     causes.sort_by(|a, b| b.share.total_cmp(&a.share));
     let mut others: Vec<Part> = Vec::new();
