@@ -83,6 +83,8 @@ mod hash;
 #[doc(hidden)]
 pub mod limits;
 #[doc(hidden)]
+pub mod mistakes;
+#[doc(hidden)]
 pub mod misuse;
 mod origin;
 mod panics;

@@ -10,6 +10,7 @@
 mod bench;
 mod bound;
 mod camera;
+mod causes;
 mod certified;
 mod claims;
 mod cli;
