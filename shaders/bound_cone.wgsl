@@ -70,7 +70,7 @@ fn begin_bound() {
 // The search for the nearest hit.
 fn begin_search(ray: Ray) {
     let length = sqrt(ray.a);
-    bound_base = bound_position + bound_place() * size_of(ray.origin);
+    bound_base = bound_position + params.moved + bound_place() * size_of(ray.origin);
     bound_slope = length * (bound_direction + bound_place());
     bound_first = FAR;
     bound_second = FAR;
@@ -214,7 +214,7 @@ fn end_search(ray: Ray, hit: Hit, is_primary: bool) {
 fn begin_shadow(ray: Ray, own: Own, exit: Exit, t_min: real, is_asked: bool) {
     let length = sqrt(ray.a);
     // Both ends of the way are known.
-    bound_base = bound_position + bound_place() * (size_of(ray.origin) + length);
+    bound_base = bound_position + params.moved + bound_place() * (size_of(ray.origin) + length);
     bound_slope = bound_place() * length;
     is_unsure |= is_asked & !(bound_position <= params.light_allowance);
     bound_is_exit_near = false;
@@ -280,7 +280,8 @@ fn note_surface(ray: Ray, body: Body, scale: vec3r, local: vec3r, hit: Hit) {
     // Along the ray a normal of a sphere turns by no more than where the ray is aslant.
     let aslant = select(sqrt(max(real(1.0) - at.discriminant / (radius * radius), real(0.0))), real(1.0), ELLIPSOIDS);
     bound_normal = normal_error(body, local, gradient, aside + aslant * shifted, world + shifted) + ROUNDOFF * ANGLE;
-    bound_position = aside + shifted + ROUNDOFF * ANGLE * (size_of(center) + greatest * radius);
+    let place = ROUNDOFF * ANGLE * (size_of(center) + greatest * radius);
+    bound_position = aside + shifted + place + params.moved;
 }
 
 // Error of the unit normal where the place is off by `along` along the surface and by `off` from it, in world units.
@@ -326,7 +327,7 @@ fn note_background() {
 
 // A light in hand, before anything comes of it.
 fn note_light(surface: Surface, light: Light, to_light: Ray, material: Material, n_dot_l: real, is_seen: bool) {
-    let place = ROUNDOFF * ANGLE * (size_of(light.position) + size_of(surface.position));
+    let place = ROUNDOFF * ANGLE * (size_of(light.position) + size_of(surface.position)) + params.moved;
     bound_light = (bound_position + place) / sqrt(to_light.a) + ROUNDOFF * ANGLE;
     let angle = bound_normal + bound_light;
     // cos changes by sin da + da^2/2, and with the lengths of both unit vectors.

@@ -47,8 +47,10 @@ struct Params {
     // how far a ray that leaves a surface may lie beside where lists take it, and one to a light;
     allowance: real,
     light_allowance: real,
-    // and the levels of the background, as a number.
+    // the levels of the background, as a number;
     background_levels: real,
+    // and what rounding takes of all places when the eye is moved to the origin.
+    moved: real,
 }
 
 // What the intersection reads of a sphere.

@@ -1,5 +1,6 @@
 //! What a certified picture is certified by: what it is of, who calculated it, and how.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use serde::Serialize;
@@ -9,14 +10,13 @@ use sha2::{Digest, Sha256};
 use crate::effects::{EffectSet, Effects};
 use crate::engine::Stages;
 use crate::precision::Tier;
+use crate::roundings::counted;
 use crate::scene::{Names, Scene};
 use crate::settings::Settings;
 
 /// What a certificate says.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Certificate {
-    /// The program and its version.
-    pub program: &'static str,
     #[serde(flatten)]
     subject: Subject,
     /// What rendered it, in words.
@@ -25,6 +25,8 @@ pub struct Certificate {
     pub kernel: Option<Tier>,
     /// How many pixels are right by which stage.
     pub stages: Stages,
+    /// What the bounds of error count with, by the names of `src/roundings.rs`.
+    pub roundings: BTreeMap<String, f64>,
 }
 
 /// What a certificate is of: nobody else's picture has all of this.
@@ -56,6 +58,11 @@ impl SceneHash {
         let sha256 = hex(Sha256::digest(plain.to_string()));
         Self { spheres: scene.spheres.len(), lights: scene.lights.len(), sha256 }
     }
+
+    /// The hash in hexadecimal digits.
+    pub fn sha256(&self) -> &str {
+        &self.sha256
+    }
 }
 
 /// What a picture is told by.
@@ -65,6 +72,13 @@ pub struct PictureHash {
     height: u32,
     /// Of its P6 file, whatever format it is stored in.
     sha256: String,
+}
+
+impl PictureHash {
+    /// The hash in hexadecimal digits.
+    pub fn sha256(&self) -> &str {
+        &self.sha256
+    }
 }
 
 /// The hash of a picture whose rows come one after another.
@@ -141,7 +155,7 @@ fn first_difference(name: &str, certified: &Value, own: &Value) -> Option<String
 impl Certificate {
     /// Of a picture that `device` rendered.
     pub fn new(subject: Subject, device: String, kernel: Option<Tier>, stages: Stages) -> Self {
-        Self { program: concat!("trueray ", env!("CARGO_PKG_VERSION")), subject, device, kernel, stages }
+        Self { subject, device, kernel, stages, roundings: counted() }
     }
 }
 

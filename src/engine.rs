@@ -183,6 +183,8 @@ impl<O: Output> DeviceEngine<'_, O> {
         let tally = reference.pixels(&unsure, &mut colors)?;
         if let Some(certifier) = &mut self.certifier {
             certifier.stages.reference += unsure.len() as u64;
+            certifier.stages.more_bits += tally.more_bits;
+            certifier.stages.undecided += tally.undecided;
         }
         unsure.into_iter().zip(colors).for_each(|(pixel, color)| place(pixel, color));
         self.decided += start.elapsed();
@@ -335,7 +337,10 @@ impl<'a, O: Output> Engine<'a, O> {
     /// By which stages the pixels so far are the reference's; `None` where they are not certified. Those of the CPU reference always are.
     pub fn stages(&self) -> Option<Stages> {
         match self {
-            Self::Cpu(cpu) => Some(Stages { reference: cpu.pixels, ..Stages::default() }),
+            Self::Cpu(cpu) => {
+                let Tally { more_bits, undecided, .. } = cpu.tally;
+                Some(Stages { reference: cpu.pixels, more_bits, undecided, ..Stages::default() })
+            }
             Self::Gpu(gpu) => gpu.certifier.as_ref().map(|certifier| certifier.stages),
         }
     }

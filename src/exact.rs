@@ -9,6 +9,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::camera::Camera;
+use crate::cpu::{Dd, Vec3};
 use crate::decimal::Decimal;
 use crate::geometry::Ellipsoid;
 use crate::scene::Sphere;
@@ -129,6 +130,13 @@ impl ExactCamera {
         std::array::from_fn(|axis| &(&(&right[axis] * &x) + &(&up[axis] * &y)) - &(&back[axis] * &z))
     }
 
+    /// Likewise in double-double, of the length that 2ᵏ image planes' distance has.
+    fn direction_in_dd(&self, sample: [u32; 2], k: i32) -> Vec3<Dd> {
+        let count = (&self.across.count * &self.down.count).to_dd(0);
+        let [x, y, z] = self.direction(sample).map(|x| x.to_dd(k) / count);
+        Vec3::new(x, y, z)
+    }
+
     /// The sign of B² − AC for the ray of a sample and the ellipsoid around `center` with these semi-axes: less where the line
     /// misses it, equal where it touches it.
     pub fn discriminant(&self, sample: [u32; 2], center: DVec3, semi_axes: DVec3) -> Ordering {
@@ -146,11 +154,15 @@ impl ExactCamera {
     }
 }
 
-/// A scene's spheres before anything is rounded, and the rays from its eye.
+/// A scene's places before anything is rounded, and the rays from its eye.
 #[derive(Debug, Clone, Default)]
 pub struct ExactScene {
     camera: ExactCamera,
     spheres: Vec<[DVec3; 2]>,
+    lights: Vec<DVec3>,
+    /// The power of two that a length in the units of kernels has more than in the file, and that of directions beside it.
+    factor: i32,
+    stretch: i32,
 }
 
 impl ExactScene {
@@ -160,7 +172,48 @@ impl ExactScene {
             let scale = sphere.scale.abs();
             [sphere.center, if true_axes { scale } else { DVec3::splat(scale.max_element()) }]
         };
-        Self { camera: ExactCamera::new(viewed), spheres: viewed.in_file().0.spheres.iter().map(sphere).collect() }
+        let (scene, _) = viewed.in_file();
+        Self {
+            camera: ExactCamera::new(viewed),
+            spheres: scene.spheres.iter().map(sphere).collect(),
+            lights: scene.lights.iter().map(|light| light.position).collect(),
+            factor: exponent(viewed.factor()),
+            stretch: exponent(Camera::new(viewed).stretch()),
+        }
+    }
+
+    /// The direction of a sample's ray in the units of kernels, in double-double.
+    pub(crate) fn direction(&self, sample: [u32; 2]) -> Vec3<Dd> {
+        self.camera.direction_in_dd(sample, self.factor + self.stretch)
+    }
+
+    /// A place of the file with the eye at the origin, in the units of kernels, in double-double.
+    fn seen(&self, place: DVec3) -> Vec3<Dd> {
+        let [x, y, z] = vector(place);
+        let [ex, ey, ez] = &self.camera.eye;
+        Vec3::new((&x - ex).to_dd(self.factor), (&y - ey).to_dd(self.factor), (&z - ez).to_dd(self.factor))
+    }
+
+    /// Centre and semi-axes of a sphere, likewise.
+    pub(crate) fn sphere(&self, sphere: usize) -> [Vec3<Dd>; 2] {
+        let [center, semi_axes] = self.spheres[sphere];
+        let [a, b, c] = vector(semi_axes).map(|x| x.to_dd(self.factor));
+        [self.seen(center), Vec3::new(a, b, c)]
+    }
+
+    /// Where a light is, likewise.
+    pub(crate) fn light(&self, light: usize) -> Vec3<Dd> {
+        self.seen(self.lights[light])
+    }
+
+    /// A length of the file in the units of kernels, likewise.
+    pub(crate) fn length(&self, x: f64) -> Dd {
+        Decimal::shortest(x * power_of_two(-self.factor)).to_dd(self.factor)
+    }
+
+    /// A part of a primary ray, with 1 on the image plane: in units of its direction.
+    pub(crate) fn part(&self, x: f64) -> Dd {
+        Decimal::shortest(x).to_dd(-self.stretch)
     }
 
     /// The sign of B² − AC for the ray of a sample, by its column and row, and the sphere with this index.
@@ -168,6 +221,15 @@ impl ExactScene {
         let [center, semi_axes] = self.spheres[sphere];
         self.camera.discriminant(sample, center, semi_axes)
     }
+}
+
+/// The binary logarithm of a power of two.
+fn exponent(x: f64) -> i32 {
+    x.log2().round() as i32
+}
+
+fn power_of_two(k: i32) -> f64 {
+    f64::from(k).exp2()
 }
 
 fn vector(v: DVec3) -> [Decimal; 3] {

@@ -61,6 +61,8 @@ pub mod cli;
 #[doc(hidden)]
 pub mod compare;
 #[doc(hidden)]
+pub mod conform;
+#[doc(hidden)]
 pub mod cpu;
 mod decimal;
 #[doc(hidden)]
@@ -83,7 +85,10 @@ mod hash;
 #[doc(hidden)]
 pub mod limits;
 #[doc(hidden)]
+pub mod mistakes;
+#[doc(hidden)]
 pub mod misuse;
+mod origin;
 mod panics;
 #[doc(hidden)]
 pub mod precision;

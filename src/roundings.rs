@@ -6,6 +6,11 @@
 //!
 //! Each has a reserve of a fourth and more, for what is of higher order and for the rounding of the bound itself.
 
+use std::collections::BTreeMap;
+
+/// What a quotient and a square root may be off, in units in the last place. A device that is worse is refused: see
+/// `src/gpu/run/quotients.rs`.
+pub(crate) const QUOTIENT_UNITS: f64 = 2.5;
 /// Of a place on its way into object space, to the side of the ray, as a part of its distance: the centre as an input, a difference, and
 /// on the way to the closest approach a product and a sum.
 pub(crate) const PLACE: f64 = 4.5;
@@ -15,6 +20,8 @@ pub(crate) const PLACE_CARRIED: f64 = 1.25;
 pub(crate) const LOCAL: f64 = 4.0;
 /// Beside these of an ellipsoid: its axes as inputs, and a product, for a place and for a direction.
 pub(crate) const AXES: f64 = 4.5;
+/// Of the place of the closest approach along the ray, where it is not measured: a scalar product, quotients and products.
+pub(crate) const ALONG: f64 = 14.0;
 /// Of a squared radius less a squared distance near it, as a part of twice the radius squared: an input counts twice, then two products,
 /// sums of three, a difference.
 pub(crate) const SQUARE: f64 = 5.0;
@@ -38,3 +45,14 @@ pub(crate) const NEAR: f64 = 20.0;
 pub(crate) const NOTHING: f64 = -20.0;
 /// An angle in doubt by more than this is not followed.
 pub(crate) const LOST: f64 = 0.1;
+
+macro_rules! counted {
+    ($($name:ident)*) => {
+        /// All of these by their names, for who wants to know what a bound counts with.
+        pub(crate) fn counted() -> BTreeMap<String, f64> {
+            [$((stringify!($name).to_lowercase(), $name)),*].into()
+        }
+    };
+}
+
+counted! { QUOTIENT_UNITS PLACE PLACE_CARRIED LOCAL AXES ALONG SQUARE ROOT ANGLE LENGTH TERM POWER ROOT_AT_EDGE NEAR NOTHING LOST }

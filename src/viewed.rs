@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use glam::DVec3;
 use rayon::prelude::*;
 
+use crate::brightness::Scalar;
 use crate::geometry::{COMMON_EXTENT, extent, reciprocal_power_of_two};
 use crate::scene::{Scene, Window};
 use crate::settings::{Secondary, Settings};
@@ -73,6 +74,12 @@ impl<'a> ViewedScene<'a> {
     /// How far the eye is from the file's origin.
     pub fn eye_distance(&self) -> f64 {
         self.file_settings.view.eye.length() * self.units.factor
+    }
+
+    /// How far rounding may have moved a place when the eye moved to the origin, in the units of kernels: two roundings of the way from
+    /// the file's origin to the eye, beside those of the way from the eye to the place.
+    pub fn moved_by(&self) -> f64 {
+        2.0 * Scalar::Double.unit() * self.eye_distance()
     }
 }
 

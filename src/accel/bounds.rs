@@ -3,7 +3,8 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::scene::{Scene, Sphere};
+use crate::scene::Sphere;
+use crate::viewed::ViewedScene;
 
 /// How a renderer rounds.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,6 +27,11 @@ impl Rounding {
     pub const UNKNOWN: Self = Self { tests: 1e9, lookups: 6e-8, cones: false };
     /// `f64` throughout.
     pub const DOUBLE: Self = Self { tests: 1.2e-16, lookups: 1.2e-16, cones: false };
+
+    /// The same, with room for what the errors of all that came before may move a ray in `f64`.
+    pub fn proven(self) -> Self {
+        Self { tests: self.tests.max(1e-7), ..self }
+    }
 
     /// The same, of a certified picture: with room for what the errors of all that came before may move a ray.
     pub fn certified(self) -> Self {
@@ -61,12 +67,15 @@ pub(super) struct Enclosure<'a> {
 }
 
 impl<'a> Enclosure<'a> {
-    /// Of the spheres of `scene`, or of their bounding spheres without `true_axes`.
-    pub(super) fn new(scene: &'a Scene, true_axes: bool, rounding: Rounding) -> Self {
+    /// Of the spheres of `viewed`, or of their bounding spheres without `true_axes`.
+    pub(super) fn new(viewed: &'a ViewedScene, true_axes: bool, rounding: Rounding) -> Self {
+        let scene = viewed.scene();
         let extent = |v: DVec3| v.abs().max_element();
         let magnitude = scene.spheres.par_iter().map(|s| extent(s.center) + extent(s.scale)).reduce(|| 0.0, f64::max);
         let reach = scene.lights.iter().map(|light| extent(light.position)).fold(magnitude, f64::max);
-        Self { spheres: &scene.spheres, true_axes, error: ERROR_STEPS * rounding.tests * magnitude, magnitude, reach }
+        // Of the file's numbers they take what the eye at the origin makes of them.
+        let error = ERROR_STEPS * rounding.tests * magnitude + 2.0 * viewed.moved_by();
+        Self { spheres: &scene.spheres, true_axes, error, magnitude, reach }
     }
 
     /// How far a ray may lie beside where a renderer's tests take it: half of what is taken for their rounding.

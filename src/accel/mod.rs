@@ -43,7 +43,7 @@ pub struct Acceleration {
     pub allowance: f64,
     /// Likewise one to a light.
     pub light_allowance: f64,
-    /// Where rays have cones, a ball around all spheres.
+    /// Middle of a ball around all spheres.
     pub middle: DVec3,
     /// Its radius.
     pub extent: f64,
@@ -58,11 +58,11 @@ impl Acceleration {
     /// Likewise, as fine as `density` says.
     pub fn with_density(viewed: &ViewedScene, effects: EffectSet, rounding: Rounding, density: &Density) -> Self {
         let (scene, camera) = (viewed.scene(), Camera::new(viewed));
-        let enclosure = Enclosure::new(scene, effects.has(Effect::Ellipsoids), rounding);
+        let enclosure = Enclosure::new(viewed, effects.has(Effect::Ellipsoids), rounding);
         let lights: Vec<DVec3> = scene.lights.iter().map(|light| light.position).collect();
         let lit = effects.has(Effect::Shadows);
         let spheres = scene.spheres.len();
-        let (middle, extent) = if rounding.cones { enclosure.ball() } else { Default::default() };
+        let (middle, extent) = enclosure.ball();
         let for_lights = enclosure.with_room(LIGHT_ROOM, rounding);
         let entries = density.entries_of_a_light(spheres, lights.len());
         Self {
@@ -78,7 +78,7 @@ impl Acceleration {
 
     /// The grid alone.
     pub fn grid_of(viewed: &ViewedScene, effects: EffectSet, rounding: Rounding, density: &Density) -> Option<Grid> {
-        let enclosure = Enclosure::new(viewed.scene(), effects.has(Effect::Ellipsoids), rounding);
+        let enclosure = Enclosure::new(viewed, effects.has(Effect::Ellipsoids), rounding);
         Self::grid_in(&enclosure, effects, rounding, density)
     }
 

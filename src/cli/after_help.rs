@@ -6,7 +6,7 @@ Examples:
   trueray render scene.txt -o scene.png
 
 Exit codes: 0 ok, 2 usage, 3 scene, 4 no device, 5 device lost, 6 output, 7 no thread; \
-128 + n where signal n ended the run. compare: 0 same, 1 different, 2 trouble; verify: 0 right, 1 wrong, 2 trouble. stress: 1 a promise is broken.
+128 + n where signal n ended the run. compare: 0 same, 1 different, 2 trouble; verify: 0 right, 1 wrong, 2 trouble. stress: 1 a promise is broken; conform: 1 a driver is wrong.
 
 Environment: WGPU_ADAPTER_NAME, WGPU_POWER_PREF, WGPU_BACKEND, VK_DRIVER_FILES are honoured; \
 TRUERAY_NO_TUNING=1 ignores what `bench --tune` has kept, TRUERAY_KERNEL_CACHE=0 the kernels that \
@@ -61,6 +61,17 @@ they run only when asked for by name, and then count like the others.
 
 Exit codes: 0 every promise holds, 1 one is broken on this device, 2 usage, 4 no device or none that has the \
 kernel, 5 device lost.";
+
+pub(super) const CONFORM: &str = "\
+Examples:
+  trueray conform --json today.json --junit conform.xml --baseline known.json
+  trueray conform --diff lavapipe.json swiftshader.json
+
+What --json has written is a baseline: its flaws are known. They must still be flaws, and no others may be. To take them from one \
+device to another, or by hand, keep of `checks` what is to be known.
+
+Exit codes: 0 all is right or a known flaw; with --diff nothing differs by more than rounding explains, 1 a pixel is unexplained, a \
+promise is broken or a known flaw is none any more, 2 usage, 4 no device or none that renders anything, 5 device lost.";
 
 pub(super) const BENCH: &str = "\
 Examples:

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::failure::Failure;
-use super::files::save_json;
+use super::files::save_report;
 use crate::certificate::{Certificate, PictureHasher, SceneHash, Subject};
 use crate::effects::Effects;
 use crate::engine::{Stages, device_name};
@@ -46,6 +46,6 @@ impl<'a> CertificateFile<'a> {
         let (Some(Begun { path, scene, picture }), Some(stages)) = (self.0, stages) else { return Ok(()) };
         let subject = Subject::new(scene, settings, effects, picture.finish());
         let kernel = Some(selection.tier).filter(|_| stages.kernel > 0);
-        save_json(path, &Certificate::new(subject, device_name(gpu), kernel, stages))
+        save_report(path, &Certificate::new(subject, device_name(gpu), kernel, stages))
     }
 }

@@ -1,15 +1,17 @@
 //! `trueray compare`.
 
+mod two_devices;
+
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
 use super::failure::{DIFFERENT, Failure, OK, USAGE};
-use super::files::json;
+use super::files::{json, report_json};
 use super::guard::Guard;
 use super::input::Input;
 use super::named::format_by_ending;
-use super::options::{DeviceOptions, PictureOptions, open_device};
+use super::options::{DeviceOptions, PictureOptions, SeveralDevices, open_device};
 use super::output::{errln, out, outln};
 use crate::compare::{
     Band, Difference, Explanation, Limits, SCALE, SizeMismatch, Verdict, heatmap, three_wide, verdict,
@@ -19,6 +21,7 @@ use crate::effects::Effects;
 use crate::engine::{Backend, Engine, device_name, render_picture};
 use crate::film::{Encoded, Leniency, Picture, ReadError, Target};
 use crate::gpu::Choice;
+use crate::mistakes::{CAUSES, Diagnosis, Known, diagnose, diagnose_size};
 use crate::precision::Request;
 use crate::viewed::ViewedScene;
 use crate::words::{count, visible};
@@ -32,6 +35,12 @@ pub(super) struct Args {
     /// Compare with the CPU reference of this scene: the picture given, or the one that the device renders
     #[arg(long, value_name = "SCENE", help_heading = "Scene")]
     scene: Option<PathBuf>,
+    /// Say which known mistake or other convention makes the picture what it is
+    #[arg(long, requires = "scene", help_heading = "Output")]
+    explain: bool,
+    /// List the mistakes and conventions that --explain knows
+    #[arg(long, exclusive = true, help_heading = "Output")]
+    causes: bool,
     /// Repair malformed pictures instead of refusing them
     #[arg(long, help_heading = "Pictures")]
     lenient: bool,
@@ -40,7 +49,7 @@ pub(super) struct Args {
     #[command(flatten)]
     picture: PictureOptions,
     #[command(flatten)]
-    device: DeviceOptions,
+    device: SeveralDevices,
     /// Write a picture of where and how much they differ
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     heatmap: Option<PathBuf>,
@@ -104,6 +113,8 @@ struct Report {
     #[serde(flatten)]
     difference: Difference,
     explanation: Option<Explanation>,
+    #[serde(flatten)]
+    diagnosis: Option<Diagnosis>,
     not_finite_pixels: Option<u64>,
     /// What had to be got over in reading the pictures.
     warnings: Vec<String>,
@@ -118,6 +129,9 @@ struct Report {
 struct Trouble<'a> {
     verdict: &'static str,
     error: &'a str,
+    /// Why the picture has another size than the scene.
+    #[serde(flatten)]
+    diagnosis: Option<&'a Diagnosis>,
 }
 
 /// A colour of the heat map.
@@ -135,31 +149,58 @@ struct Pair {
     pictures: [Picture; 2],
     remarks: Remarks,
     explanation: Option<Explanation>,
+    diagnosis: Option<Diagnosis>,
     not_finite: Option<u64>,
 }
 
 pub(super) fn run(args: &Args) -> u8 {
-    match compare(args) {
-        Ok(code) => code,
-        // compare has one code for every trouble, as cmp does.
-        Err(failure) => {
-            match json(&Trouble { verdict: "trouble", error: &failure.message }) {
-                Ok(json) if args.json => out!("{json}"),
-                _ => _ = failure.without_cpu().report(),
+    compare(args).unwrap_or_else(|failure| trouble(args, failure, None))
+}
+
+/// Says why nothing can be compared.
+fn trouble(args: &Args, failure: Failure, diagnosis: Option<&Diagnosis>) -> u8 {
+    match json(&Trouble { verdict: "trouble", error: &failure.message, diagnosis }) {
+        Ok(json) if args.json => out!("{json}"),
+        _ => {
+            if let Some(diagnosis) = diagnosis {
+                out!("{}", diagnosis.report());
             }
-            USAGE
+            _ = failure.without_cpu().report();
         }
     }
+    // compare has one code for every trouble, as cmp does.
+    USAGE
 }
 
 fn compare(args: &Args) -> Result<u8, Failure> {
+    if args.causes {
+        let width = CAUSES.iter().map(|known| known.name.len()).max().unwrap_or(0);
+        for Known { name, line, .. } in CAUSES {
+            outln!("{name:<width$}  {line}");
+        }
+        return Ok(OK);
+    }
     let written = [("--heatmap", &args.heatmap), ("--three-wide", &args.three_wide)];
     Guard::new(args.pictures.iter().chain(&args.scene)).options(written)?;
     written.iter().filter_map(|(_, path)| path.as_deref()).try_for_each(|path| format_by_ending(path).map(|_| ()))?;
-    let Pair { names: [a, b], pictures: [picture_a, picture_b], remarks, explanation, not_finite } =
+    if let Some(devices) = args.device.pair()? {
+        if args.explain {
+            return Err(Failure::new(
+                USAGE,
+                "--explain is for somebody's picture, --device twice for two of this program's",
+            ));
+        }
+        return two_devices::compare(args, &devices);
+    }
+    let Pair { names: [a, b], pictures: [picture_a, picture_b], remarks, explanation, diagnosis, not_finite } =
         match (&args.scene, args.pictures.as_slice()) {
             (None, [a, b]) => two_pictures(args, a, b)?,
-            (Some(scene), pictures @ ([] | [_])) => with_scene(args, scene, pictures.first().map(PathBuf::as_path))?,
+            (Some(scene), pictures @ ([] | [_])) => {
+                match with_scene(args, scene, pictures.first().map(PathBuf::as_path))? {
+                    Compared::Pair(pair) => *pair,
+                    Compared::OtherSize(failure, diagnosis) => return Ok(trouble(args, failure, Some(&diagnosis))),
+                }
+            }
             _ => return Err(Failure::new(USAGE, "compare takes two pictures, or --scene SCENE and at most one")),
         };
     let difference = Difference::between(&picture_a, &picture_b)?;
@@ -186,9 +227,20 @@ fn compare(args: &Args) -> Result<u8, Failure> {
     let Remarks { warnings, notes } = remarks;
     if args.json {
         let not_finite_pixels = not_finite;
-        let report =
-            Report { a, b, verdict, exceeded, difference, explanation, not_finite_pixels, warnings, notes, heat_map };
-        out!("{}", json(&report)?);
+        let report = Report {
+            a,
+            b,
+            verdict,
+            exceeded,
+            difference,
+            explanation,
+            diagnosis,
+            not_finite_pixels,
+            warnings,
+            notes,
+            heat_map,
+        };
+        out!("{}", report_json(&report)?);
     } else {
         out!("{}", difference.report(&visible(&a), &visible(&b)));
         for note in &notes {
@@ -196,6 +248,9 @@ fn compare(args: &Args) -> Result<u8, Failure> {
         }
         if let Some(explanation) = &explanation {
             out!("{}", explanation.report());
+        }
+        if let Some(diagnosis) = &diagnosis {
+            out!("{}", diagnosis.report());
         }
         for (index, HeatBand { legend, pixels, .. }) in heat_map.iter().flatten().enumerate() {
             let label = if index == 0 { "heat map" } else { "" };
@@ -209,8 +264,15 @@ fn compare(args: &Args) -> Result<u8, Failure> {
     Ok(if verdict == Verdict::Different { DIFFERENT } else { OK })
 }
 
+/// A picture against its scene.
+enum Compared {
+    Pair(Box<Pair>),
+    /// The sizes differ; why they do.
+    OtherSize(Failure, Diagnosis),
+}
+
 /// The picture given, or the device's, against the scene's reference.
-fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Pair, Failure> {
+fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Compared, Failure> {
     let input = Input::read(scene)?;
     if args.json && input.parsed.scene.is_none() {
         return Err(Failure::new(USAGE, input.parsed.report(false).trim_end()));
@@ -221,30 +283,40 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Pair,
     let rendered = |rgb| Picture::assemble(scene.width, scene.height, rgb);
     let mut remarks = Remarks::default();
     let encoded = picture.map(open).transpose()?;
-    if let Some((name, encoded)) = &encoded {
-        let (width, height) = encoded.size()?;
-        if (width, height) != (scene.width, scene.height) {
-            let name = visible(name);
-            let message = format!("{name} has {width} × {height} pixels, the scene {} × {}", scene.width, scene.height);
-            return Err(Failure::new(USAGE, message));
-        }
-    }
     let settings = args.picture.settings()?;
     let viewed = scene.viewed(&settings);
     let effects = args.picture.renderable_effects(&viewed)?;
+    let device = args.device.first();
+    let sized = encoded.map(|(name, encoded)| encoded.size().map(|size| (name, encoded, size))).transpose()?;
+    let encoded = if let Some((name, encoded, (width, height))) = sized {
+        if (width, height) != (scene.width, scene.height) {
+            let shown = visible(&name);
+            let message =
+                format!("{shown} has {width} × {height} pixels, the scene {} × {}", scene.width, scene.height);
+            let failure = Failure::new(USAGE, message);
+            if !args.explain {
+                return Err(failure);
+            }
+            let picture = decode(args, &name, encoded, "the picture", &mut remarks)?;
+            return Ok(Compared::OtherSize(failure, diagnose_size(&picture, &viewed, &effects)));
+        }
+        Some((name, encoded))
+    } else {
+        None
+    };
     let (name, picture, not_finite, judge) = if let Some((name, encoded)) = encoded {
         let picture = decode(args, &name, encoded, "the picture", &mut remarks)?;
-        let judge = judge_of_unknown(&args.device, &viewed, &effects)?;
+        let judge = judge_of_unknown(&device, &viewed, &effects)?;
         drop(viewed);
         (name, picture, None, judge)
     } else {
         // Comparing the reference with itself would say nothing: auto means a device here.
-        let choice = if args.device.device == Choice::Auto { &Choice::Gpu } else { &args.device.device };
+        let choice = if device.device == Choice::Auto { &Choice::Gpu } else { &device.device };
         if *choice == Choice::Cpu {
             return Err(Failure::new(USAGE, "--device cpu would compare the reference with itself"));
         }
         let gpu = open_device(choice)?;
-        let selection = args.device.selection(Some(&gpu), &viewed, &effects);
+        let selection = device.selection(Some(&gpu), &viewed, &effects);
         let backend = Backend::of(Some(&gpu), &selection);
         let mut engine = Engine::new(backend, viewed, &effects)?;
         let (rgb, not_finite) = render_picture(&mut engine)?;
@@ -256,7 +328,17 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Pair,
     let reference = Reference::new(&scene.viewed(&settings), &effects);
     let explanation = Explanation::of(&picture, &expected, &reference, &judge);
     let names = [name, format!("reference of {}", loaded.name)];
-    Ok(Pair { names, pictures: [picture, expected], remarks, explanation: Some(explanation), not_finite })
+    let diagnosis =
+        args.explain.then(|| diagnose(&picture, &expected, &scene.viewed(&settings), &effects, &explanation.places));
+    let pictures = [picture, expected];
+    Ok(Compared::Pair(Box::new(Pair {
+        names,
+        pictures,
+        remarks,
+        explanation: Some(explanation),
+        diagnosis,
+        not_finite,
+    })))
 }
 
 /// The judge of a picture of unknown origin: as if it came from the device that is asked for or, for auto, from the one that would render
@@ -316,7 +398,14 @@ fn two_pictures(args: &Args, a: &Path, b: &Path) -> Result<Pair, Failure> {
     let mut remarks = Remarks::default();
     let a = decode(args, &name_a, a, "A", &mut remarks)?;
     let b = decode(args, &name_b, b, "B", &mut remarks)?;
-    Ok(Pair { names: [name_a, name_b], pictures: [a, b], remarks, explanation: None, not_finite: None })
+    Ok(Pair {
+        names: [name_a, name_b],
+        pictures: [a, b],
+        remarks,
+        explanation: None,
+        diagnosis: None,
+        not_finite: None,
+    })
 }
 
 /// A picture file, or standard input for `-`, and its name.

@@ -9,7 +9,7 @@ use crate::gpu::{DeviceTuning, Error, hidden, list};
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Output")]
 pub(super) struct Args {
-    /// Print JSON
+    /// Print JSON, with everything that a report of a fault should tell
     #[arg(long)]
     json: bool,
 }
@@ -31,6 +31,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
             if !device.pci.is_empty() {
                 outln!("   PCI id    {}", device.pci);
             }
+            outln!("   Vulkan    {}", device.vulkan);
             outln!("   f64       {}", if device.f64 { "yes" } else { "no" });
             outln!(
                 "   limits    {} MiB a storage binding, {} MiB a buffer, {} workgroups a dispatch, {} invocations a workgroup, \

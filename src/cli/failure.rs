@@ -94,7 +94,7 @@ impl From<gpu::Error> for Failure {
         let cpu = match &error {
             Error::NoneFound(_) => Some("renders without any"),
             Error::TooLarge { .. } | Error::OutOfRange { .. } | Error::Cut { .. } => Some("has no such limit"),
-            Error::ArithmeticRefused { .. } => Some("needs none"),
+            Error::ArithmeticRefused { .. } => Some("does not depend on it"),
             _ => None,
         };
         Self { cpu, ..Self::new(code, error.to_string()) }

@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::failure::{Failure, OUTPUT};
 use crate::atomic::folder_of;
 use crate::film::Target;
+use crate::origin::{Origin, origin};
 
 /// The command line as it was given, with the program's plain name; arguments with blanks or quotes are quoted.
 pub(super) fn command() -> String {
@@ -47,9 +48,23 @@ pub(super) fn save(path: &Path, text: &str) -> Result<(), Failure> {
     Ok(crate::film::save_text(&Target::from_argument(path.as_os_str()), text)?)
 }
 
-/// Writes JSON for people and programs.
-pub(super) fn save_json(path: &Path, document: &impl Serialize) -> Result<(), Failure> {
-    save(path, &json(document)?)
+/// A report with who made it.
+#[derive(Serialize)]
+struct Signed<'a, T> {
+    #[serde(flatten)]
+    origin: &'static Origin,
+    #[serde(flatten)]
+    document: &'a T,
+}
+
+/// Writes a report as JSON.
+pub(super) fn save_report(path: &Path, document: &impl Serialize) -> Result<(), Failure> {
+    save(path, &report_json(document)?)
+}
+
+/// A report, an object, as JSON for people and programs, with who made it.
+pub(super) fn report_json(document: &impl Serialize) -> Result<String, Failure> {
+    json(&Signed { origin: origin(), document })
 }
 
 /// JSON for people and programs.

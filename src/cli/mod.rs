@@ -8,6 +8,7 @@ mod certificate;
 mod check;
 mod color;
 mod compare;
+mod conform;
 mod devices;
 mod environment;
 mod export;
@@ -92,6 +93,9 @@ enum Command {
     /// Check on this device what each tier promises of hard cases
     #[command(after_help = after_help::STRESS)]
     Stress(stress::Args),
+    /// Check a driver with built-in scenes and hard cases, or compare two
+    #[command(after_help = after_help::CONFORM)]
+    Conform(conform::Args),
     /// Measure how fast built-in scenes of growing size are rendered
     #[command(after_help = after_help::BENCH)]
     Bench(bench::Args),
@@ -150,6 +154,7 @@ pub fn run() -> ExitCode {
         Some(Command::Check(args)) => check::run(&args),
         Some(Command::Study(args)) => study::run(&args).map(ok),
         Some(Command::Stress(args)) => stress::run(&args).map_err(Failure::without_cpu),
+        Some(Command::Conform(args)) => conform::run(&args).map_err(Failure::without_cpu),
         Some(Command::Bench(args)) => bench::run(&args).map(ok),
         Some(Command::Export(args)) => export::run(&args).map(ok),
         #[cfg(feature = "view")]

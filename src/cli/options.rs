@@ -142,6 +142,40 @@ pub(super) struct DeviceOptions {
     pub precision: precision::Request,
 }
 
+/// Which device renders, or which two.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Device")]
+pub(super) struct SeveralDevices {
+    /// auto, cpu, gpu (never falls back), an index of `trueray devices`, part of a device's name or driver, or its PCI id; twice to
+    /// compare the pictures of two devices
+    #[arg(long, value_name = "DEVICE", default_value = "auto")]
+    device: Vec<Choice>,
+    /// Tier of the kernel: fast, robust, double, or auto for the cheapest that covers the scene; or certified: every pixel is the CPU
+    /// reference's
+    #[arg(long, value_name = "TIER", default_value = "auto")]
+    precision: precision::Request,
+}
+
+impl SeveralDevices {
+    /// The first of them.
+    pub(super) fn first(&self) -> DeviceOptions {
+        self.with(self.device.first().unwrap_or(&Choice::Auto))
+    }
+
+    /// Both of them, if there are two.
+    pub(super) fn pair(&self) -> Result<Option<[DeviceOptions; 2]>, Failure> {
+        match &self.device[..] {
+            [a, b] => Ok(Some([self.with(a), self.with(b)])),
+            [_, _, ..] => Err(Failure::new(USAGE, "compare takes two devices at most")),
+            _ => Ok(None),
+        }
+    }
+
+    fn with(&self, device: &Choice) -> DeviceOptions {
+        DeviceOptions { device: device.clone(), precision: self.precision }
+    }
+}
+
 impl DeviceOptions {
     /// The Vulkan device, or `None` for the CPU reference. `auto` takes the reference where no device can be used at all, and says
     /// why.

@@ -294,7 +294,7 @@ fn render_one(
         tuning: gpu.map(|gpu| gpu.tuned().summary()),
         settings: *settings,
         effects,
-        certified: stages.filter(|_| selection.certified),
+        certified: stages.filter(|_| selection.certified || gpu.is_none()),
         precision: gpu.map(|_| selection),
         sampled,
         rays: rays.filter(|_| !args.no_ray_counts),

@@ -6,7 +6,7 @@ use clap::Args;
 use serde_json::Value;
 
 use super::failure::Failure;
-use super::files::{save, save_json};
+use super::files::{save, save_report};
 use super::guard::Guard;
 use super::output::out;
 
@@ -51,7 +51,7 @@ impl Reports {
             save(path, &csv())?;
         }
         if let Some(path) = &self.json {
-            save_json(path, &json())?;
+            save_report(path, &json())?;
         }
         Ok(())
     }

@@ -51,7 +51,7 @@ pub(super) struct Stats {
     /// Absent where every pixel is sampled.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sampled: Option<Sampled>,
-    /// How many pixels of a certified picture are right by which stage; absent where it is not certified.
+    /// How many pixels are right by which stage; absent where a device's picture is not certified.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub certified: Option<Stages>,
     pub rays: Option<Rays>,
@@ -102,8 +102,10 @@ impl Stats {
         if let Some(selection) = &self.precision {
             row("precision", format!("{selection}: {}", selection.reason));
         }
-        if let (Some(stages), Some(selection)) = (&self.certified, &self.precision) {
-            row("certified", stages.in_words(selection.tier));
+        match (&self.certified, &self.precision) {
+            (Some(stages), Some(selection)) => row("certified", stages.in_words(selection.tier)),
+            (Some(stages), None) => row("decisions", stages.decisions_in_words()),
+            (None, _) => {}
         }
         if let Some(Sampled { fill, pixels, .. }) = &self.sampled {
             let all = u64::from(self.width) * u64::from(self.height);

@@ -7,12 +7,13 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::failure::{BROKEN, Failure, NO_DEVICE, OK, USAGE};
-use super::files::json;
+use super::files::{json, report_json};
 use super::options::open_device;
 use super::output::{errln, out, outln};
 use super::progress::{Progress, Style};
 use super::signals::{say_last, say_nothing};
 use crate::gpu::{Choice, Gpu, Kernel};
+use crate::origin::origin;
 use crate::precision::Tier;
 use crate::stress::{Class, Row, Verdict, classes, cost, run as run_classes, table};
 use crate::threads::lock;
@@ -85,7 +86,7 @@ struct Report {
 
 impl Report {
     fn print(&self) -> Result<(), Failure> {
-        out!("{}", json(self)?);
+        out!("{}", report_json(self)?);
         Ok(())
     }
 }
@@ -128,6 +129,7 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
     }
     let start = Instant::now();
     if !args.json {
+        outln!("{}", origin());
         outln!("{}, {} rays a case, seed {}", gpu.device.info, args.count, args.seed);
         out!("{}", table(&[]));
     }

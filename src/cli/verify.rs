@@ -6,9 +6,10 @@ use serde::Serialize;
 
 use super::compare::open;
 use super::failure::{DIFFERENT, Failure, OK, USAGE};
+use super::files::report_json;
 use super::input::Input;
 use super::options::{DeviceOptions, PictureOptions};
-use super::output::outln;
+use super::output::{out, outln};
 use crate::certificate::{PictureHasher, SceneHash, Subject};
 use crate::engine::{Backend, Engine, Stages, device_name, render_bands};
 use crate::film::{Leniency, Picture};
@@ -143,7 +144,7 @@ fn verify(args: &Args) -> Result<u8, Failure> {
         stages: engine.stages(),
     };
     if args.json {
-        outln!("{}", serde_json::to_string_pretty(&report).map_err(|error| Failure::new(USAGE, error.to_string()))?);
+        out!("{}", report_json(&report)?);
     } else {
         report.print(args.certificate.is_some(), gpu.as_ref(), &selection);
     }
@@ -176,8 +177,9 @@ impl Report {
         outln!("picture           {}", visible(&self.picture));
         outln!("reference of      {}", visible(&self.scene));
         outln!("calculated by     {}", visible(&self.device));
-        if let Some(stages) = self.stages.filter(|_| gpu.is_some()) {
-            outln!("                  {}", stages.in_words(selection.tier));
+        if let Some(stages) = self.stages {
+            let words = if gpu.is_some() { stages.in_words(selection.tier) } else { stages.decisions_in_words() };
+            outln!("                  {words}");
         }
         match &self.certificate_mismatch {
             Some(mismatch) => outln!("certificate       of something else: {}", visible(mismatch)),

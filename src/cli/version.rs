@@ -3,18 +3,14 @@
 use std::env::consts::{ARCH, OS};
 use std::sync::LazyLock;
 
-/// The commit, where whoever builds the program names it in `TRUERAY_COMMIT`.
-const COMMIT: &str = match option_env!("TRUERAY_COMMIT") {
-    Some(commit) => commit,
-    None => "not named when it was built (TRUERAY_COMMIT)",
-};
+use crate::origin::{BUILD, COMMIT, NO_COMMIT};
 
 static LONG: LazyLock<String> = LazyLock::new(|| {
     let version = env!("CARGO_PKG_VERSION");
-    let kind = if cfg!(debug_assertions) { "debug" } else { "release" };
+    let commit = COMMIT.unwrap_or(NO_COMMIT);
     let view = if cfg!(feature = "view") { "view" } else { "none" };
     format!(
-        "{version}\ncommit    {COMMIT}\nbuild     {kind}, {OS} {ARCH}\nfeatures  {view}\n\
+        "{version}\ncommit    {commit}\nbuild     {BUILD}, {OS} {ARCH}\nfeatures  {view}\n\
          `trueray devices` lists the devices and their drivers."
     )
 });

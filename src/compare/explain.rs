@@ -28,6 +28,9 @@ pub struct Explanation {
     pub undecided: u64,
     /// The first of the unexplained, in reading order.
     pub listed: Vec<UnexplainedPixel>,
+    /// Columns and rows of all of the unexplained.
+    #[serde(skip)]
+    pub places: Vec<[u32; 2]>,
 }
 
 /// A pixel that no decision explains.
@@ -68,6 +71,7 @@ impl Explanation {
             unexplained: 0,
             undecided: 0,
             listed: Vec::new(),
+            places: Vec::new(),
         };
         for (finding, pixel) in differing {
             if let Finding::Explained(decision) = finding {
@@ -75,6 +79,7 @@ impl Explanation {
                 continue;
             }
             explanation.unexplained += 1;
+            explanation.places.push([pixel.x, pixel.y]);
             explanation.undecided += u64::from(finding == Finding::Undecided);
             if explanation.listed.len() < LISTED {
                 explanation.listed.push(pixel);

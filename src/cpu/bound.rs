@@ -8,6 +8,8 @@
 //! Bounds are to first order, with the second order where surfaces are grazed or strongly bent; `src/roundings.rs` has how many
 //! roundings add up.
 
+use std::cmp::Ordering;
+
 use super::decision::Decision;
 use super::intersect::{Approach, Crossing, Hit, Own, Range, Ray};
 use super::margin::normal_error;
@@ -18,8 +20,9 @@ use super::scene::{PointLight, Shape, World};
 use super::shade::{LightTerms, Surface, max, min, specular_power};
 use super::vec3::{Vec3, largest, length};
 use super::witness::Witness;
+use crate::brightness::Scalar;
 use crate::roundings::{
-    ANGLE, AXES, LENGTH, LOCAL, LOST, NEAR, NOTHING, PLACE, POWER, ROOT, ROOT_AT_EDGE, SQUARE, TERM,
+    ALONG, ANGLE, AXES, LENGTH, LOCAL, LOST, NEAR, NOTHING, PLACE, POWER, ROOT, ROOT_AT_EDGE, SQUARE, TERM,
 };
 use crate::settings::Specular;
 
@@ -33,8 +36,11 @@ struct Cone<T> {
 }
 
 /// The bound of one sample, while it is traced in `T`.
+///
+/// That of a `PROOF` is the reference's own: errors of colours are left out, rays from the eye touch spheres where exact arithmetic says
+/// so, what is in doubt is taken for a tie, and the scene's numbers are the decimals of its file.
 #[derive(Debug, Clone)]
-pub(crate) struct Bound<T> {
+pub(crate) struct Bound<T, const PROOF: bool> {
     /// Unit roundoff.
     u: T,
     /// Roundings of a place on its way into object space, as a part of its distance, and as a part of the radius with those of its square.
@@ -42,18 +48,25 @@ pub(crate) struct Bound<T> {
     local: T,
     /// What of the centre as an input is not counted with these.
     center: T,
+    /// Of all places: what rounding takes when the eye moves to the origin.
+    moved: T,
     cone: Cone<T>,
     /// Of the refraction rays that wait.
     waiting: Vec<(Cone<T>, T)>,
-    /// The width of the cone at t is `base` + |t|·`slope`, in world units.
+    /// The width of the cone at t is `base` + |t|·`slope`, in world units;
     base: T,
     slope: T,
+    /// and in a proof no greater than this at any sphere.
+    wide: T,
+    /// A ball around all spheres, for that.
+    middle: Vec3<T>,
+    extent: T,
     /// Of the search in hand: the least distance at which any ray of the cone may meet a sphere, and the least of another one;
     first: T,
     second: T,
     /// with the sphere of the first;
     first_shape: Option<Shape<T>>,
-    /// the greatest squared error of such a distance, and that of the own sphere's.
+    /// the greatest squared error of such a distance, or in a proof the error itself, and that of the own sphere's.
     error: T,
     exit: T,
     /// What makes the second unsure.
@@ -77,19 +90,25 @@ pub(crate) struct Bound<T> {
     pub unsure: Option<Decision>,
 }
 
-impl<T: Real> Bound<T> {
-    /// Of a primary ray whose direction is known to `direction`.
-    pub(crate) fn new(world: &World<T>, direction: T) -> Self {
+impl<T: Real, const PROOF: bool> Bound<T, PROOF> {
+    /// Of rays in `world`, none of which has begun.
+    pub(crate) fn new(world: &World<T>) -> Self {
         let (zero, u) = (T::ZERO, T::from_f64(T::UNIT));
+        // The host rounds decimals, and moves the eye to the origin.
+        let of_host = T::UNIT.min(Scalar::Double.unit());
         Self {
             u,
-            place: T::from_f64(if world.ellipsoids { PLACE + AXES } else { PLACE }) * u,
+            place: T::from_f64(if world.ellipsoids { PLACE + AXES } else { PLACE }) * u + T::from_f64(of_host),
             local: T::from_f64(if world.ellipsoids { LOCAL + AXES + SQUARE } else { LOCAL + SQUARE }) * u,
             center: if world.ellipsoids { u } else { zero },
-            cone: Cone { position: zero, direction },
+            moved: T::from_f64(world.moved * (of_host / Scalar::Double.unit())),
+            cone: Cone { position: zero, direction: zero },
             waiting: Vec::new(),
             base: zero,
             slope: zero,
+            wide: zero,
+            middle: world.middle,
+            extent: world.extent,
             first: T::FAR,
             second: T::FAR,
             first_shape: None,
@@ -109,27 +128,48 @@ impl<T: Real> Bound<T> {
         }
     }
 
+    /// Begins with a primary ray whose direction is known to `direction`.
+    #[inline]
+    pub(crate) fn begin(&mut self, direction: T) {
+        self.cone = Cone { position: T::ZERO, direction };
+        self.waiting.clear();
+        self.is_begun = false;
+        self.throughput = T::ONE;
+        self.color = T::ZERO;
+        self.sizes = T::ZERO;
+        self.unsure = None;
+    }
+
+    #[inline]
     fn roundings(&self, count: f64) -> T {
         T::from_f64(count) * self.u
     }
 
+    #[inline]
     fn mark(&mut self, decision: Decision) {
         self.unsure.get_or_insert(decision);
     }
 
     /// Half the width of the cone at `t`, in the object space of `shape`, with the rounding on the way there.
+    #[inline]
     fn width(&self, shape: &Shape<T>, t: T) -> T {
         largest(shape.inv_scale) * (self.base + t.abs() * self.slope + self.center * size(shape.center))
             + self.local * shape.radius
     }
 
     /// How far the discriminant may be off where the line is about a radius from the centre.
-    fn reach(&self, shape: &Shape<T>, at: &Approach<T>) -> T {
-        let width = self.width(shape, at.b / at.a);
+    #[inline]
+    pub(super) fn reach(&self, shape: &Shape<T>, at: &Approach<T>) -> T {
+        let width = if PROOF {
+            largest(shape.inv_scale) * self.wide + self.local * shape.radius
+        } else {
+            self.width(shape, at.b / at.a)
+        };
         two::<T>() * width * (shape.radius + width)
     }
 
     /// Likewise, to the side where the ray passes: long axes count less there.
+    #[inline]
     fn reach_aside(&self, shape: &Shape<T>, at: &Approach<T>) -> T {
         let t = at.b / at.a;
         let width = self.width(shape, t);
@@ -140,18 +180,21 @@ impl<T: Real> Bound<T> {
     }
 
     /// How near to its surface the start of the ray has to lie for its side to be in doubt.
-    fn near(&self, shape: &Shape<T>) -> T {
+    #[inline]
+    pub(super) fn near(&self, shape: &Shape<T>) -> T {
         let width = self.width(shape, T::ZERO);
         T::from_f64(NEAR) * width * (shape.radius + width)
     }
 
     /// Whether it is in doubt that the line meets the sphere.
-    fn is_edge(&self, shape: &Shape<T>, at: &Approach<T>, reach: T) -> bool {
+    #[inline]
+    pub(super) fn is_edge(&self, shape: &Shape<T>, at: &Approach<T>, reach: T) -> bool {
         // NaN is in doubt.
         !(at.discriminant.abs() > reach) && !(at.discriminant.abs() > self.reach_aside(shape, at))
     }
 
     /// A sphere is met from `t` on; where that is in doubt, it counts as two.
+    #[inline]
     fn push(&mut self, t: T, is_doubt: bool, cause: Decision, shape: &Shape<T>) {
         if t == self.first && self.first_shape.is_some_and(|first| is_same(&first, shape)) {
             return;
@@ -168,12 +211,53 @@ impl<T: Real> Bound<T> {
         }
     }
 
+    /// Hits so near to one at `t` tie with it.
+    #[inline]
+    pub(super) fn tie(&self, t: T) -> T {
+        let error = if PROOF { self.error } else { self.error.sqrt() };
+        T::from_f64(2.0 * ROOT_AT_EDGE) * error + self.exit + self.roundings(ROOT) * t.abs()
+    }
+
     /// Error of the distance at which a ray leaves its own sphere.
-    fn exit_error(&self, ray: &Ray<T>, shape: &Shape<T>) -> T {
+    pub(super) fn exit_error(&self, ray: &Ray<T>, shape: &Shape<T>) -> T {
         let length = length(ray.direction * shape.inv_scale);
         let stretch = largest(shape.inv_scale);
         let place = stretch * self.base + self.local * shape.radius;
         two::<T>() * (place + T::from_f64(3.0) * shape.radius * (stretch * self.slope / length)) / length
+    }
+
+    /// What is known of the surface in a proof: in object space, where lengths are known beforehand or have simple bounds.
+    #[inline]
+    fn proven_surface(&mut self, world: &World<T>, hit: &Hit<T>, at: &Approach<T>) {
+        let shape = &world.shapes[hit.sphere];
+        let (stretch, greatest) = (largest(shape.inv_scale), largest(world.materials[hit.sphere].scale));
+        let radius = shape.radius;
+        let way = size(at.origin) + radius;
+        let world_width = self.base + hit.t.abs() * self.slope + self.center * size(shape.center);
+        let stretched = stretch * world_width + self.place * way + self.local * radius;
+        let reach = two::<T>() * stretched * (radius + stretched);
+        let rest = at.discriminant - reach;
+        let aside = if rest > T::ZERO {
+            T::from_f64(0.5) * reach / rest.sqrt()
+        } else {
+            T::from_f64(ROOT_AT_EDGE) * reach.sqrt() + stretched
+        };
+        let along = aside + self.roundings(ALONG) * (way + radius);
+        // The radius is at least 1, and so the gradient no shorter than the least stretch.
+        let turned = if world.ellipsoids { along * stretch / least(shape.inv_scale) } else { along };
+        self.normal = turned + self.roundings(ANGLE);
+        let place = size(shape.center) + greatest * radius;
+        self.cone.position = greatest * along + self.roundings(ANGLE) * place + self.moved;
+    }
+
+    /// Whether N·L is so far from 0 that no more needs to be known, in a proof.
+    #[inline]
+    fn is_far_from_terminator(&self, light: &PointLight<T>, position: Vec3<T>, n_dot_l: T) -> bool {
+        let place = self.roundings(ANGLE) * (size(light.position) + size(position)) + self.moved;
+        // No more than the distance.
+        let distance = largest(absolute(light.position - position));
+        let rest = min(n_dot_l.abs(), T::from_f64(LOST)) - self.normal - self.roundings(32.0);
+        two::<T>() * (self.cone.position + place) < distance * (rest - self.normal)
     }
 
     /// Adds a term of this size to the colour, with its error.
@@ -199,18 +283,25 @@ impl<T: Real> Bound<T> {
     }
 }
 
-impl<T: Real> Witness<T> for Bound<T> {
+impl<T: Real, const PROOF: bool> Witness<T> for Bound<T, PROOF> {
+    #[inline]
     fn search(&mut self, ray: &Ray<T>, light: bool) {
         let place = self.place;
-        let length = length(ray.direction);
+        let length = if PROOF { size(ray.direction) } else { length(ray.direction) };
         let origin = size(ray.origin);
         if light {
             // Both ends of the way are known.
-            self.base = self.cone.position + place * (origin + length);
+            self.base = self.cone.position + self.moved + place * (origin + length);
             self.slope = place * length;
         } else {
-            self.base = self.cone.position + place * origin;
+            self.base = self.cone.position + self.moved + place * origin;
             self.slope = length * (self.cone.direction + place);
+        }
+        if PROOF {
+            // No sphere is farther from where the ray begins; a shadow ray ends at t = 1.
+            let ahead = two::<T>() * self.extent + size(ray.origin - self.middle);
+            let along = if light { self.slope } else { ahead * (self.cone.direction + place) };
+            self.wide = self.base + along + self.center * (ahead + origin);
         }
         (self.first, self.second) = (T::FAR, T::FAR);
         (self.error, self.exit) = (T::ZERO, T::ZERO);
@@ -220,7 +311,20 @@ impl<T: Real> Witness<T> for Bound<T> {
         self.may_be_blocked = false;
     }
 
-    fn tested(&mut self, _ray: &Ray<T>, shape: &Shape<T>, at: &Approach<T>, range: &Range<T>) {
+    #[inline]
+    fn tested(
+        &mut self,
+        _ray: &Ray<T>,
+        shape: &Shape<T>,
+        at: &Approach<T>,
+        range: &Range<T>,
+        sign: Option<Ordering>,
+        root: Option<(T, bool)>,
+    ) {
+        let sign = sign.filter(|_| PROOF);
+        if sign == Some(Ordering::Less) {
+            return;
+        }
         let reach = self.reach(shape, at);
         if at.discriminant < -reach {
             return;
@@ -228,7 +332,9 @@ impl<T: Real> Witness<T> for Bound<T> {
         let radius_squared = shape.radius * shape.radius;
         // The squared distance of the place where roots begin to count.
         let start = at.origin.dot(at.origin) - radius_squared - range.t_min * (at.b + at.b - range.t_min * at.a);
-        let is_near = !(start.abs() > self.near(shape));
+        // In a proof the width at the closest point does for the start.
+        let near = if PROOF { T::from_f64(0.5 * NEAR) * reach } else { self.near(shape) };
+        let is_near = !(start.abs() > near);
         let is_behind = at.b <= at.a * range.t_min;
         if !is_near && is_behind && (start > T::ZERO || !range.greater) {
             return;
@@ -236,16 +342,23 @@ impl<T: Real> Witness<T> for Bound<T> {
         let closest = at.b / at.a;
         if is_near {
             self.push(range.t_min, true, Decision::NearPlane, shape);
-        } else if self.is_edge(shape, at, reach) {
+        } else if sign.is_none() && self.is_edge(shape, at, reach) {
             self.push(max(closest - shape.radius / at.a.sqrt(), range.t_min), true, Decision::Silhouette, shape);
-        } else if at.discriminant > T::ZERO && (start > T::ZERO || range.greater) {
-            let half_chord = (at.discriminant / at.a).sqrt();
-            let t = if start > T::ZERO { closest - half_chord } else { closest + half_chord };
+        } else if (sign.is_some() || at.discriminant > T::ZERO) && (start > T::ZERO || range.greater) {
+            let t = match root {
+                Some((t, _)) if PROOF => t,
+                _ => {
+                    let half_chord = (max(at.discriminant, T::ZERO) / at.a).sqrt();
+                    if start > T::ZERO { closest - half_chord } else { closest + half_chord }
+                }
+            };
             self.push(t, false, Decision::Tie, shape);
-            self.error = max(self.error, reach / at.a);
+            let squared = reach / at.a;
+            self.error = max(self.error, if PROOF { root_error(squared, (closest - t).abs()) } else { squared });
         }
     }
 
+    #[inline]
     fn tested_own(&mut self, ray: &Ray<T>, own: &Own<T>, shape: &Shape<T>, t: T, range: &Range<T>) {
         if !own.inside {
             return;
@@ -266,13 +379,14 @@ impl<T: Real> Witness<T> for Bound<T> {
         }
     }
 
+    #[inline]
     fn crossed(&mut self, _ray: &Ray<T>, shape: &Shape<T>, crossing: &Crossing<T>, blocks: bool, t_min: T) -> bool {
         let Crossing { at, start_squared, end_squared } = crossing;
         let reach = self.reach(shape, at);
         if at.discriminant < -reach {
             return false;
         }
-        let near = self.near(shape);
+        let near = if PROOF { T::from_f64(0.5 * NEAR) * reach } else { self.near(shape) };
         let is_near = |squared: T| !((squared - shape.radius * shape.radius).abs() > near);
         let passes = at.b > at.a * t_min && at.b < at.a;
         if (passes && self.is_edge(shape, at, reach)) || is_near(*start_squared) || is_near(*end_squared) {
@@ -283,6 +397,7 @@ impl<T: Real> Witness<T> for Bound<T> {
         blocks
     }
 
+    #[inline]
     fn nearest(
         &mut self,
         world: &World<T>,
@@ -291,21 +406,19 @@ impl<T: Real> Witness<T> for Bound<T> {
         _range: &Range<T>,
         hit: Option<Hit<T>>,
     ) -> Option<Hit<T>> {
-        let error = T::from_f64(2.0 * ROOT_AT_EDGE) * self.error.sqrt() + self.exit;
-        let is_unsure = match &hit {
-            // NaN is in doubt.
-            Some(hit) => !(self.second - hit.t > error + self.roundings(ROOT) * hit.t.abs()),
-            None => self.second < T::FAR,
-        };
+        // NaN is in doubt.
+        let is_unsure = self.second < T::FAR && hit.is_none_or(|hit| !(self.second - hit.t > self.tie(hit.t)));
         if is_unsure {
             self.mark(self.cause);
         }
         // Lists of spheres take a ray for what it is but for so much.
-        let width = if let Some(hit) = &hit {
-            self.base + hit.t.abs() * self.slope
-        } else {
-            let along = (ray.origin - world.middle).dot(ray.direction) / length(ray.direction);
-            self.base + max(world.extent - along, T::ZERO) * (self.cone.direction + self.place)
+        let width = match &hit {
+            Some(hit) => self.base + hit.t.abs() * self.slope,
+            None if PROOF => self.wide,
+            None => {
+                let along = (ray.origin - world.middle).dot(ray.direction) / length(ray.direction);
+                self.base + max(world.extent - along, T::ZERO) * (self.cone.direction + self.place)
+            }
         };
         if !(width <= world.allowance) {
             self.mark(Decision::Silhouette);
@@ -313,13 +426,18 @@ impl<T: Real> Witness<T> for Bound<T> {
         hit
     }
 
+    #[inline]
     fn background(&mut self, world: &World<T>) {
-        if self.is_begun {
+        if !PROOF && self.is_begun {
             self.add_term(largest(absolute(world.background)), T::ZERO);
         }
     }
 
     fn surface(&mut self, world: &World<T>, ray: &Ray<T>, hit: &Hit<T>, at: &Approach<T>, surface: &Surface<T>) {
+        if PROOF {
+            self.proven_surface(world, hit, at);
+            return;
+        }
         let shape = &world.shapes[hit.sphere];
         let material = &world.materials[hit.sphere];
         let local = surface.own.local;
@@ -331,13 +449,15 @@ impl<T: Real> Witness<T> for Bound<T> {
         let stretched = largest(shape.inv_scale) * world_width + rounding;
         let reach = two::<T>() * (gradient * world_width + shape.radius * rounding + stretched * stretched);
         let rest = at.discriminant - reach;
-        if !(rest > T::ZERO) {
-            self.mark(Decision::Silhouette);
-        }
-        // w/|N·d| with N·d = √(a·discriminant)/|g|, of the least discriminant.
-        let slant = length(ray.direction) / (at.a * rest).sqrt();
-        let aside = slant * (T::from_f64(0.5) * reach);
         let greatest = largest(material.scale);
+        let aside = if rest > T::ZERO {
+            // w/|N·d| with N·d = √(a·discriminant)/|g|, of the least discriminant.
+            let slant = length(ray.direction) / (at.a * rest).sqrt();
+            slant * (T::from_f64(0.5) * reach)
+        } else {
+            self.mark(Decision::Silhouette);
+            T::FAR
+        };
         // How far the closest approach, and so the hit, is off along the ray is seen from the former: it is at right angles to the ray.
         let shifted = greatest
             * (at.perpendicular.dot(at.direction).abs() / at.a.sqrt() + self.roundings(LENGTH + ANGLE) * shape.radius);
@@ -350,20 +470,24 @@ impl<T: Real> Witness<T> for Bound<T> {
         };
         self.normal = turned + self.roundings(ANGLE);
         let place = size(shape.center) + greatest * shape.radius;
-        self.cone.position = aside + shifted + self.roundings(ANGLE) * place;
+        self.cone.position = aside + shifted + self.roundings(ANGLE) * place + self.moved;
         if self.is_begun {
             self.add_term(largest(absolute(world.ambient * material.color)) * material.ka.abs(), T::ZERO);
         }
         self.is_begun = true;
     }
 
+    #[inline]
     fn lit(&mut self, world: &World<T>, surface: &Surface<T>, light: &PointLight<T>, n_dot_l: T, is_lit: bool) -> bool {
         let material = &world.materials[surface.sphere];
         self.shows_light = material.kd != T::ZERO || material.ks != T::ZERO;
         if !self.shows_light {
             return is_lit;
         }
-        let place = self.roundings(ANGLE) * (size(light.position) + size(surface.position));
+        if PROOF && self.is_far_from_terminator(light, surface.position, n_dot_l) {
+            return is_lit;
+        }
+        let place = self.roundings(ANGLE) * (size(light.position) + size(surface.position)) + self.moved;
         let distance = length(light.position - surface.position);
         let direction = (self.cone.position + place) / distance + self.roundings(ANGLE);
         let angle = self.normal + direction;
@@ -372,12 +496,14 @@ impl<T: Real> Witness<T> for Bound<T> {
         let cosine = sine * angle + angle * angle + self.roundings(2.0 * LENGTH + ANGLE) * n_dot_l.abs();
         self.light = [cosine, direction];
         // NaN is in doubt.
-        if !(angle < T::from_f64(LOST)) || !(n_dot_l.abs() > cosine) {
+        let is_unsure = !(angle < T::from_f64(LOST)) || !(n_dot_l.abs() > cosine);
+        if is_unsure {
             self.mark(Decision::Terminator);
         }
-        is_lit
+        is_lit && !(PROOF && !T::PROVES && is_unsure)
     }
 
+    #[inline]
     fn blocked(&mut self, world: &World<T>, _ray: &Ray<T>, _own: &Own<T>, is_blocked: bool) -> bool {
         let is_lost = !(self.cone.position <= world.light_allowance);
         if self.shows_light && (is_lost || (self.may_be_blocked && !self.is_blocked)) {
@@ -387,6 +513,9 @@ impl<T: Real> Witness<T> for Bound<T> {
     }
 
     fn shaded(&mut self, world: &World<T>, surface: &Surface<T>, light: &PointLight<T>, terms: &LightTerms<T>) {
+        if PROOF {
+            return;
+        }
         let material = &world.materials[surface.sphere];
         let [cosine_error, light_error] = self.light;
         let diffuse = largest(absolute(light.intensity * material.color)) * material.kd.abs();
@@ -409,6 +538,7 @@ impl<T: Real> Witness<T> for Bound<T> {
         self.add_term(intensity * terms.specular.abs(), intensity * material.ks.abs() * power);
     }
 
+    #[inline]
     fn reflected(&mut self, throughput: T) {
         let turn = self.normal + self.roundings(LENGTH + ANGLE);
         self.cone.direction += two::<T>() * turn;
@@ -428,8 +558,12 @@ impl<T: Real> Witness<T> for Bound<T> {
             + ratio * ratio * cosine_error * cosine_error
             + two::<T>() * ratio * sine_squared * ratio_error
             + self.roundings(2.0 * ANGLE) * max(along * along, (ratio * ratio - T::ONE).abs());
+        let mut snell = snell;
         if !(square.abs() > square_error) {
             self.mark(Decision::CriticalAngle);
+            if PROOF && !T::PROVES {
+                snell.square = T::ZERO;
+            }
         }
         let direction = if snell.is_total() {
             self.cone.direction + two::<T>() * (self.normal + self.roundings(LENGTH + ANGLE))
@@ -451,6 +585,16 @@ impl<T: Real> Witness<T> for Bound<T> {
             (self.cone, self.throughput) = (cone, throughput);
         }
     }
+}
+
+/// The least component.
+fn least<T: Real>(v: Vec3<T>) -> T {
+    min(v.x, min(v.y, v.z))
+}
+
+/// Error of half a chord whose square is off by `squared`: |√x − √y| ≤ |x − y|/√x.
+fn root_error<T: Real>(squared: T, half_chord: T) -> T {
+    if half_chord * half_chord > squared { squared / half_chord } else { squared.sqrt() }
 }
 
 /// Error of this power, cosⁿ, where 1 − cos is `d` and the angle is off by `angle`.

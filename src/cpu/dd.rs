@@ -120,7 +120,7 @@ impl Dd {
     }
 
     /// x·2ᵏ for |k| ≤ 2000, exactly while nothing leaves the range of `f64`.
-    fn times_power_of_two(self, k: i32) -> Self {
+    pub(crate) fn times_power_of_two(self, k: i32) -> Self {
         let half = power_of_two(k / 2);
         let rest = power_of_two(k - k / 2);
         Self::renormalized(self.hi * half * rest, self.lo * half * rest)
@@ -161,6 +161,7 @@ impl Real for Dd {
     const FAR: Self = Self { hi: 3e38, lo: 0.0 };
     const MAX_THROUGHPUT: Self = Self { hi: Scalar::Double.max_throughput(), lo: 0.0 };
     const UNIT: f64 = 2e-31;
+    const PROVES: bool = false;
     const ROUNDING: Rounding = Rounding::DOUBLE;
 
     #[inline]

@@ -8,6 +8,7 @@ use std::cmp::Ordering;
 
 use super::real::Real;
 use super::scene::{Shape, World};
+use super::shade::max;
 use super::tangent::Tangents;
 use super::vec3::Vec3;
 use super::witness::Witness;
@@ -55,6 +56,21 @@ pub(crate) struct Approach<T> {
     pub perpendicular: Vec3<T>,
     /// radius² − |perpendicular|²: negative where the line misses.
     pub discriminant: T,
+}
+
+impl<T: Real> Approach<T> {
+    /// The same with a discriminant whose sign is right.
+    #[inline]
+    pub(crate) fn decided(self, sign: Option<Ordering>) -> Self {
+        let discriminant = match sign {
+            None => return self,
+            Some(Ordering::Less) => -T::ONE,
+            Some(Ordering::Equal) => T::ZERO,
+            // Where that is not positive the chord is shorter than the scalar can say.
+            Some(Ordering::Greater) => max(self.discriminant, T::ZERO),
+        };
+        Self { discriminant, ..self }
+    }
 }
 
 pub(crate) fn approach<T: Real>(ray: &Ray<T>, shape: &Shape<T>) -> Approach<T> {
@@ -120,11 +136,18 @@ pub(crate) fn accepted_root<T: Real, W: Witness<T>>(
         return (own.inside && t > t_min && t < t_max).then_some((t, true));
     }
     let at = approach(ray, shape);
-    witness.tested(ray, shape, &at, range);
-    least_of(roots(&at, shape.radius)?, range)
+    let root = root_in(range, &at, shape.radius);
+    witness.tested(ray, shape, &at, range, None, root);
+    root
 }
 
 /// The least of both roots that counts, and whether it is the greater one.
+pub(super) fn root_in<T: Real>(range: &Range<T>, at: &Approach<T>, radius: T) -> Option<(T, bool)> {
+    least_of(roots(at, radius)?, range)
+}
+
+/// The same of these two.
+#[inline]
 pub(super) fn least_of<T: Real>((lesser, greater): (T, T), range: &Range<T>) -> Option<(T, bool)> {
     let Range { t_min, t_max, .. } = *range;
     if lesser > t_min {
@@ -155,9 +178,10 @@ pub(crate) fn primary_root<T: Real, W: Witness<T>>(
     witness: &mut W,
 ) -> Option<(T, bool)> {
     let at = approach(ray, shape);
-    witness.tested(ray, shape, &at, range);
-    let at = tangents.decided(at, shape, touches);
-    least_of(roots(&at, shape.radius)?, range)
+    let sign = tangents.decided(&at, shape, touches);
+    let root = root_in(range, &at.decided(sign), shape.radius);
+    witness.tested(ray, shape, &at, range, sign, root);
+    root
 }
 
 /// The nearest of `nearest` and the intersections with `spheres` in `range`; of equal ones the lowest index.

@@ -3,6 +3,8 @@
 //! The renderers round ellipsoids to their object space first; here nothing is rounded before the first operation. Two
 //! independent formulas stand side by side: [`intersect`] runs the reference's own code, [`truth`] the moment form.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::dd::Dd;
@@ -13,8 +15,6 @@ use super::scene::{Glass, Material, Shape, World};
 use super::shade::surface_at;
 use super::tangent::Tangents;
 use super::vec3::Vec3;
-use crate::accel::Acceleration;
-use crate::exact::ExactScene;
 use crate::settings::Specular;
 
 /// What is known of a line and an ellipsoid.
@@ -148,9 +148,10 @@ fn glass_world<T: Real>(bodies: &[GlassBody]) -> World<T> {
         ellipsoids: true,
         middle: Vec3::ZERO,
         extent: T::ONE,
-        accel: Acceleration::default(),
+        moved: 0.0,
+        accel: Arc::default(),
         tangents: Tangents::default(),
-        exact: ExactScene::default(),
+        exact: Arc::default(),
     }
 }
 

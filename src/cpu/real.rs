@@ -34,6 +34,9 @@ pub trait Real:
     /// Unit roundoff of its operations.
     const UNIT: f64;
 
+    /// Whether a picture in this type proves each of its decisions.
+    const PROVES: bool;
+
     /// How the type rounds.
     const ROUNDING: Rounding;
 
@@ -66,13 +69,14 @@ pub trait Real:
 }
 
 macro_rules! impl_real {
-    ($t:ty, $scalar:expr, $unit:expr, $rounding:expr) => {
+    ($t:ty, $scalar:expr, $rounding:expr, $proves:expr) => {
         impl Real for $t {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
             const FAR: Self = 3e38;
             const MAX_THROUGHPUT: Self = $scalar.max_throughput() as $t;
-            const UNIT: f64 = $unit;
+            const UNIT: f64 = $scalar.unit();
+            const PROVES: bool = $proves;
             const ROUNDING: Rounding = $rounding;
 
             fn from_f64(x: f64) -> Self {
@@ -100,5 +104,5 @@ macro_rules! impl_real {
     };
 }
 
-impl_real!(f32, Scalar::Single, Scalar::Single.unit(), Rounding::SINGLE);
-impl_real!(f64, Scalar::Double, Scalar::Double.unit(), Rounding::DOUBLE);
+impl_real!(f32, Scalar::Single, Rounding::SINGLE, false);
+impl_real!(f64, Scalar::Double, Rounding::DOUBLE, true);

@@ -1,9 +1,12 @@
 //! Rows of pixels from the reference, in parallel.
 
+use std::sync::OnceLock;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::bound::Bound;
+use super::dd::Dd;
 use super::decision::Decision;
 use super::intersect::{Own, Primary, Ray};
 use super::real::Real;
@@ -22,7 +25,9 @@ use crate::viewed::ViewedScene;
 #[derive(Debug, Clone)]
 pub struct Reference<T> {
     pub(super) world: World<T>,
-    camera: Camera,
+    /// The same in double-double, once a pixel needs it.
+    pub(super) exact_world: OnceLock<World<Dd>>,
+    pub(super) camera: Camera,
     pub(super) quantize: Quantize,
 }
 
@@ -34,6 +39,7 @@ impl<T: Real> Reference<T> {
 
     /// Likewise, with lists of spheres for a renderer that rounds like this, at least like `T`.
     pub fn with_rounding(viewed: &ViewedScene, effects: &Effects, rounding: Rounding) -> Self {
+        let rounding = if T::PROVES { rounding.proven() } else { rounding };
         let accel = Acceleration::new(viewed, effects.set, rounding);
         Self::with_lists(viewed, effects, accel)
     }
@@ -41,7 +47,7 @@ impl<T: Real> Reference<T> {
     /// Likewise, with lists of spheres that were made for another renderer of this scene, which rounds at least like `T`.
     pub fn with_lists(viewed: &ViewedScene, effects: &Effects, accel: Acceleration) -> Self {
         let (world, camera) = (World::new(viewed, effects, accel), Camera::new(viewed));
-        Self { world, camera, quantize: viewed.settings().quantize }
+        Self { world, exact_world: OnceLock::new(), camera, quantize: viewed.settings().quantize }
     }
 
     /// The ray of the sample in sample column `i` and sample row `j`.
@@ -58,7 +64,7 @@ impl<T: Real> Reference<T> {
     /// The unclamped colour of pixel (column `i`, row `j`); `None` where the picture has no such pixel.
     pub fn color(&self, i: u32, j: u32) -> Option<DVec3> {
         let (width, height) = self.size();
-        (i < width && j < height).then(|| self.pixel_color(i, j, &mut ()).to_f64())
+        (i < width && j < height).then(|| self.proven_color(i, j, &mut self.bound(), &mut Tally::default()).to_f64())
     }
 
     /// Pixel (column `i`, row `j`) of a picture with one sample a pixel, with the bound of its error, beside a renderer whose unit roundoff
@@ -67,7 +73,8 @@ impl<T: Real> Reference<T> {
     pub fn bounded(&self, i: u32, j: u32, others: f64) -> Option<Bounded> {
         let (width, height) = self.size();
         let primary = (i < width && j < height).then(|| self.primaries(i, j).next()).flatten()?;
-        let mut bound = Bound::new(&self.world, T::from_f64(self.camera.direction_error(T::UNIT)));
+        let mut bound = Bound::<T, false>::new(&self.world);
+        bound.begin(T::from_f64(self.camera.direction_error(T::UNIT)));
         let color = trace(&self.world, &primary, &mut bound);
         let levels = Levels::new(self.quantize);
         let is_step = !bound.has_sure_levels(color, &levels, T::from_f64(others));
@@ -77,12 +84,6 @@ impl<T: Real> Reference<T> {
             levels: levels.levels(color),
             doubt: bound.unsure.or(is_step.then_some(Decision::QuantisationStep)),
         })
-    }
-
-    /// The unclamped colour of a pixel.
-    fn pixel_color<W: Witness<T>>(&self, i: u32, j: u32, witness: &mut W) -> Vec3<T> {
-        let samples = self.primaries(i, j).map(|primary| trace(&self.world, &primary, witness));
-        resolve(samples, self.camera.samples_per_side())
     }
 
     /// The rays of all samples of pixel (column `i`, row `j`), row by row.
@@ -107,11 +108,11 @@ impl<T: Real> Reference<T> {
         let width = self.camera.width() as usize;
         let samples = u64::from(self.camera.samples_per_side() * self.camera.samples_per_side());
         let chunk = |(chunk, pixels): (usize, &mut [u8])| {
-            let mut tally = Tally::default();
+            let (mut tally, mut bound) = (Tally::default(), self.bound());
             for (k, pixel) in pixels.as_chunks_mut::<3>().0.iter_mut().enumerate() {
                 let index = chunk * CHUNK + k;
                 let (i, j) = ((index % width) as u32, first + (index / width) as u32);
-                let color = self.pixel_color(i, j, &mut tally);
+                let color = self.proven_color(i, j, &mut bound, &mut tally);
                 tally.primary += samples;
                 tally.not_finite += u64::from(!color.to_f64().is_finite());
                 *pixel = Levels::new(self.quantize).levels(color);
@@ -131,7 +132,7 @@ impl<T: Real> Reference<T> {
         let samples = u64::from(self.camera.samples_per_side() * self.camera.samples_per_side());
         let each = |(&[i, j], target): (&[u32; 2], &mut [u8; 3])| {
             let mut tally = Tally::default();
-            let color = self.pixel_color(i, j, &mut tally);
+            let color = self.proven_color(i, j, &mut self.bound(), &mut tally);
             *target = Levels::new(self.quantize).levels(color);
             let not_finite = u64::from(!color.to_f64().is_finite());
             tally.plus(Tally { primary: samples, not_finite, ..Tally::default() })
@@ -212,6 +213,10 @@ pub struct Tally {
     pub shadow: u64,
     /// Reflected and refracted rays.
     pub reflection: u64,
+    /// Pixels with a decision that `f64` leaves open: double-double has taken it.
+    pub more_bits: u64,
+    /// Those of them with one that double-double leaves open, too: it was taken for the tie that it all but surely is.
+    pub undecided: u64,
 }
 
 impl Tally {
@@ -223,6 +228,8 @@ impl Tally {
             primary: self.primary + other.primary,
             shadow: self.shadow + other.shadow,
             reflection: self.reflection + other.reflection,
+            more_bits: self.more_bits + other.more_bits,
+            undecided: self.undecided + other.undecided,
         }
     }
 }

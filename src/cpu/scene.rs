@@ -1,5 +1,7 @@
 //! The scene in the scalar of the reference.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use super::intersect::Range;
@@ -93,15 +95,17 @@ pub(crate) struct World<T> {
     pub light_allowance: T,
     /// Whether object space differs from the world by more than a translation.
     pub ellipsoids: bool,
+    /// How far rounding may have moved a place when the eye moved to the origin.
+    pub moved: f64,
     /// A ball around all spheres.
     pub middle: Vec3<T>,
     pub extent: T,
     /// Which spheres a ray can meet.
-    pub accel: Acceleration,
+    pub accel: Arc<Acceleration>,
     /// Which primary rays may just touch a sphere,
     pub tangents: Tangents,
     /// and whether they do.
-    pub exact: ExactScene,
+    pub exact: Arc<ExactScene>,
 }
 
 impl<T: Real> World<T> {
@@ -143,9 +147,10 @@ impl<T: Real> World<T> {
             ellipsoids: on(Effect::Ellipsoids),
             middle: Vec3::from_f64(accel.middle),
             extent: T::from_f64(accel.extent),
-            accel,
+            moved: viewed.moved_by(),
+            accel: Arc::new(accel),
             tangents: Tangents::of(ellipsoids.par_iter().copied(), viewed, T::ROUNDING.tests),
-            exact: ExactScene::new(viewed, on(Effect::Ellipsoids)),
+            exact: Arc::new(ExactScene::new(viewed, on(Effect::Ellipsoids))),
         }
     }
 }

@@ -7,7 +7,6 @@ use rayon::iter::ParallelIterator;
 use super::intersect::Approach;
 use super::real::Real;
 use super::scene::Shape;
-use super::shade::max;
 use crate::exact::TangentMargin;
 use crate::geometry::Ellipsoid;
 use crate::viewed::ViewedScene;
@@ -32,33 +31,30 @@ impl Tangents {
         Self { margin, widest: margin.greatest(ellipsoid) }
     }
 
-    /// The approach with a discriminant whose sign is right: `touches` says which it is where rounding could have decided.
+    /// The sign of the discriminant where rounding could decide it: what `touches` says.
     #[inline]
     pub(crate) fn decided<T: Real>(
         &self,
-        at: Approach<T>,
+        at: &Approach<T>,
         shape: &Shape<T>,
         touches: impl FnOnce() -> Ordering,
-    ) -> Approach<T> {
+    ) -> Option<Ordering> {
         // Ordered comparison: a NaN is never a hit, and needs no exact arithmetic.
-        if at.discriminant.abs() <= T::from_f64(self.widest) { self.exactly(at, shape, touches) } else { at }
+        if at.discriminant.abs() <= T::from_f64(self.widest) { self.exactly(at, shape, touches) } else { None }
     }
 
     #[cold]
-    fn exactly<T: Real>(&self, at: Approach<T>, shape: &Shape<T>, touches: impl FnOnce() -> Ordering) -> Approach<T> {
+    fn exactly<T: Real>(
+        &self,
+        at: &Approach<T>,
+        shape: &Shape<T>,
+        touches: impl FnOnce() -> Ordering,
+    ) -> Option<Ordering> {
         let [a, discriminant, perpendicular, distance] =
             [at.a, at.discriminant, at.perpendicular.dot(at.perpendicular).sqrt(), at.origin.dot(at.origin).sqrt()]
                 .map(T::to_f64);
         let stretch = shape.inv_scale.to_f64().max_element();
-        if discriminant.abs() > self.margin.of(perpendicular, distance, stretch, a.sqrt()) {
-            return at;
-        }
-        let discriminant = match touches() {
-            Ordering::Less => -T::ONE,
-            Ordering::Equal => T::ZERO,
-            // Where that is not positive the chord is shorter than the scalar can say.
-            Ordering::Greater => max(at.discriminant, T::ZERO),
-        };
-        Approach { discriminant, ..at }
+        let is_near = !(discriminant.abs() > self.margin.of(perpendicular, distance, stretch, a.sqrt()));
+        is_near.then(touches)
     }
 }

@@ -17,6 +17,7 @@ use crate::precision::Tier;
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::viewed::ViewedScene;
+use crate::words::count;
 
 /// How many pixels of a certified picture are right by which stage.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
@@ -27,14 +28,24 @@ pub struct Stages {
     pub double: u64,
     /// By the CPU reference, of the others.
     pub reference: u64,
+    /// Those of them for which the reference took more bits than `f64` has: double-double.
+    pub more_bits: u64,
+    /// Those of them with a decision that double-double leaves open, too: it was taken for the tie that it all but surely is.
+    pub undecided: u64,
 }
 
 impl Stages {
     /// Where the first kernel was that of `tier`.
     pub fn in_words(&self, tier: Tier) -> String {
-        let Self { kernel, double, reference } = self;
+        let Self { kernel, double, reference, .. } = self;
+        let more = if self.more_bits > 0 { format!(" ({})", self.decisions_in_words()) } else { String::new() };
         let again = if tier == Tier::Double { String::new() } else { format!("{double} by double, ") };
-        format!("{kernel} pixels by {tier}, {again}{reference} by the CPU reference")
+        format!("{kernel} pixels by {tier}, {again}{reference} by the CPU reference{more}")
+    }
+
+    /// What the reference's decisions took.
+    pub fn decisions_in_words(&self) -> String {
+        format!("{} needed double-double, {} undecided", count(self.more_bits, "pixel"), self.undecided)
     }
 }
 

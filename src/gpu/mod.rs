@@ -18,6 +18,7 @@ pub use device::error::Error;
 pub use device::info::{DeviceInfo, DeviceKind};
 pub use device::mask::Mask;
 pub use device::open::Device;
+pub use device::vulkan::VulkanInfo;
 pub use device::{calls, drivers};
 pub use facade::{Gpu, USUAL_KERNELS};
 pub use kernel::ahead::Ahead;
@@ -32,6 +33,7 @@ pub use render::{DeviceTimes, GpuRenderer, Options, Output, Pixels, Rendered, Ro
 pub use run::echo::echo_layout;
 pub use run::fill::Reconstructor;
 pub use run::probe::{Answer, Batch, Point, ProbeRay, Prober, Question, RawBatch, Surface};
+pub use run::quotients::Quotients;
 pub use run::selftest::SelfTest;
 pub use shared::LEAST_BUFFERS;
 pub use table::layout;

@@ -178,6 +178,15 @@ impl<'a> GpuRenderer<'a> {
     }
 }
 
+/// The kernel of `tier`, and how it rounds; certified pictures ask more of the device.
+fn kernel_of(gpu: &Gpu, tier: Tier, options: &Options) -> Result<(Kernel, Rounding), Error> {
+    let kernel = gpu.kernel(tier)?;
+    if options.certified {
+        gpu.certifies(kernel)?;
+    }
+    Ok((kernel, options.rounding(kernel)))
+}
+
 impl<'a, O: Output> GpuRenderer<'a, O> {
     /// Prepares `viewed` for `gpu`, with more than the pixels where that is wanted.
     pub fn with(
@@ -187,8 +196,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         tier: Tier,
         options: &Options,
     ) -> Result<Self, Error> {
-        let kernel = gpu.kernel(tier)?;
-        let kernel = (kernel, options.rounding(kernel));
+        let kernel = kernel_of(gpu, tier, options)?;
         Ok(gpu.device.guarded(|| Self::prepared(gpu, viewed, effects, kernel, options, drop))?.0)
     }
 
@@ -200,8 +208,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         tier: Tier,
         options: &Options,
     ) -> Result<(Self, Acceleration), Error> {
-        let kernel = gpu.kernel(tier)?;
-        let kernel = (kernel, options.rounding(kernel));
+        let kernel = kernel_of(gpu, tier, options)?;
         gpu.device.guarded(|| Self::prepared(gpu, viewed, effects, kernel, options, |accel| accel))
     }
 

@@ -63,7 +63,8 @@ pub(super) fn declaration(name: &str, scalar: Scalar) -> Option<String> {
                 // The kernels of f32 have difference_f32.wgsl.
                 "PLACE" => real(match scalar {
                     Scalar::Single => PLACE_CARRIED,
-                    Scalar::Double => PLACE,
+                    // And the decimals are rounded.
+                    Scalar::Double => PLACE + 1.0,
                 }),
                 "MAX_THROUGHPUT" => real(scalar.max_throughput()),
                 _ => return None,

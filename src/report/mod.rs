@@ -36,6 +36,7 @@ pub(crate) fn page(title: &str, about: &str, command: &str, content: &Markup, me
             body {
                 h1 { (title) }
                 p.sub { (about) ", measured by " code { (command) } }
+                p.sub { (crate::origin::origin().to_string()) }
                 (content)
                 h2 { "How this was measured" }
                 (method)

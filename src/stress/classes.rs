@@ -31,6 +31,8 @@ pub(super) enum Kind {
     Power,
     OddLights,
     Mirrors,
+    /// Pixels that a kernel says to be sure of, in scenes of all kinds.
+    Certified,
     FacingMirrors,
     Transforms,
 }
@@ -430,6 +432,9 @@ pub fn classes() -> Vec<Class> {
                 limits(&[(Wrong, 0.0), (PowerError, 1.1e-13)]),
                 limits(&[(Wrong, 0.0), (PowerError, 3.7e-6)]),
             ]),
+        ]),
+        class(26, "certified", "pixels that a certified kernel is sure of, in scenes of all kinds", "not the reference's", vec![
+            case("", Kind::Certified, [limits(&[(Differing, 0.0)]), Target::NotApplicable, limits(&[(Differing, 0.0)]), Target::NotApplicable]),
         ]),
     ]
 }

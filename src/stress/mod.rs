@@ -2,6 +2,7 @@
 
 mod classes;
 mod cost;
+mod families;
 mod metrics;
 mod path;
 mod pictures;
@@ -17,6 +18,7 @@ use serde::Serialize;
 pub use crate::random::Random;
 pub use classes::{Class, classes};
 pub use cost::{Cost, cost};
+pub use families::{SceneKind, scene_kinds};
 pub use metrics::{Limit, Metrics, Quantity, Target, Verdict};
 pub use path::passage;
 pub use report::table;
@@ -181,6 +183,10 @@ impl Shared {
             Kind::Power => special::power(prober, &mut random, self.count).map(Some),
             Kind::OddLights => picture(pictures::odd_lights),
             Kind::Mirrors => picture(pictures::mirrors),
+            Kind::Certified => match kernel {
+                Kernel::Tier(tier) => pictures::certified(prober.gpu(), tier, self.count, random.bits()),
+                Kernel::Pairs | Kernel::Schoolbook | Kernel::NoBarrier => Ok(None),
+            },
             Kind::FacingMirrors => special::facing_mirrors(prober, &mut random, self.count).map(Some),
             Kind::Transforms if kernel.carries_low() => special::transforms(prober, &mut random).map(Some),
             Kind::Transforms => Ok(None),

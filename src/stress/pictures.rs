@@ -1,14 +1,15 @@
 //! The classes that need whole pictures: lights in odd places, mirrors.
 
+use super::families::scene_kinds;
 use super::metrics::Metrics;
 use crate::compare::Explanation;
 use crate::cpu::{Judge, Reference};
 use crate::effects::Effects;
-use crate::engine::{Backend, Engine, render_picture};
+use crate::engine::{Backend, Engine, Options, render_picture};
 use crate::film::Picture;
-use crate::gpu::{Error, Gpu};
+use crate::gpu::{Error, Gpu, GpuRenderer, Rows};
 use crate::misuse::Misuse;
-use crate::precision::Tier;
+use crate::precision::{Request, Selection, Tier};
 use crate::scene::{Scene, parse};
 use crate::settings::Settings;
 
@@ -56,6 +57,45 @@ pub(super) fn odd_lights(gpu: &Gpu, tier: Tier) -> Result<Metrics, Error> {
     }
     metrics.note = "differing: pixels that the reference does not explain".into();
     Ok(metrics)
+}
+
+/// Class 26: the pixels that a certified kernel is sure of, beside the reference's. Pictures of so many pixels together go through the
+/// kinds of scenes, both conventions in turn; those that `auto` would not begin with this kernel are left out. `None` where all are.
+pub(super) fn certified(gpu: &Gpu, tier: Tier, count: usize, seed: u64) -> Result<Option<Metrics>, Error> {
+    /// Kinds are in the order of what they are about: so many further on there is another.
+    const STRIDE: usize = 37;
+    const WIDTH: u32 = 96;
+    const HEIGHT: u32 = 72;
+    let options = Options { certified: true, ..Options::default() };
+    let kinds = scene_kinds();
+    let (mut metrics, mut doubtful, mut wrong) = (Metrics::default(), 0, 0);
+    for number in 0..count.div_ceil((WIDTH * HEIGHT) as usize) {
+        let kind = &kinds[number * STRIDE % kinds.len()];
+        let mut scene = kind.scene(seed.wrapping_add((number / kinds.len()) as u64));
+        (scene.width, scene.height) = (WIDTH, HEIGHT);
+        let settings = [Settings::classic(), Settings::exact()][number % 2];
+        let viewed = scene.viewed(&settings);
+        let effects = Effects::of(&viewed);
+        if Selection::of(&viewed, &effects, Request::Certified, gpu.ladder()).tier > tier {
+            continue;
+        }
+        let (expected, _) = render_picture(&mut Engine::new(Backend::Reference, scene.viewed(&settings), &effects)?)?;
+        let mut rgb = vec![0; expected.len()];
+        let rendered = GpuRenderer::<Rows>::with(gpu, &viewed, &effects, tier, &options)?.rows(0, &mut rgb)?;
+        let (own, right) = (rgb.as_chunks_mut::<3>().0, expected.as_chunks::<3>().0);
+        doubtful += rendered.unsure.len() + rendered.cut.len();
+        for [x, y] in rendered.unsure.into_iter().chain(rendered.cut) {
+            let index = (y * WIDTH + x) as usize;
+            own[index] = right[index];
+        }
+        metrics.count += right.len() as u64;
+        metrics.not_finite += rendered.not_finite;
+        wrong += own.iter().zip(right).filter(|(own, right)| own != right).count() as u64;
+    }
+    metrics.differing = Some(wrong);
+    let share = 100.0 * doubtful as f64 / metrics.count as f64;
+    metrics.note = format!("differing: pixels that the kernel is sure of, and wrong; in doubt: {share:.1} %");
+    Ok((metrics.count > 0).then_some(metrics))
 }
 
 /// Two mirrors beside the view, a third ahead.

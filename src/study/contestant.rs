@@ -8,7 +8,7 @@ use crate::cpu::{Judge, Reference};
 use crate::effects::Effects;
 use crate::engine::{Backend, Engine, Options};
 use crate::gpu::{self, Gpu};
-use crate::precision::Tier;
+use crate::precision::{Request, Selection, Tier};
 use crate::viewed::ViewedScene;
 
 /// Something that renders the scene and is measured. Nothing but this file knows the list: a kernel that only the study
@@ -17,6 +17,8 @@ use crate::viewed::ViewedScene;
 pub enum Contestant {
     /// The device with the kernel of a tier.
     Device(Tier),
+    /// The device, and whatever it takes beside it so that each pixel is what the reference has.
+    Certified,
     /// The CPU reference's formulas in `f32`.
     CpuSingle,
     /// The CPU reference.
@@ -25,10 +27,11 @@ pub enum Contestant {
 
 impl Contestant {
     /// All of them, in the order of the tables.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Device(Tier::Fast),
         Self::Device(Tier::Robust),
         Self::Device(Tier::Double),
+        Self::Certified,
         Self::CpuSingle,
         Self::CpuDouble,
     ];
@@ -37,6 +40,7 @@ impl Contestant {
     pub fn name(self) -> &'static str {
         match self {
             Self::Device(tier) => tier.name(),
+            Self::Certified => "certified",
             Self::CpuSingle => "CPU f32",
             Self::CpuDouble => "CPU f64",
         }
@@ -45,7 +49,7 @@ impl Contestant {
     /// Why it cannot run on `gpu`, where it cannot.
     pub(super) fn obstacle(self, gpu: Option<&Gpu>) -> Option<String> {
         match (self, gpu) {
-            (Self::Device(_), None) => Some("no Vulkan device is used".into()),
+            (Self::Device(_) | Self::Certified, None) => Some("no Vulkan device is used".into()),
             _ => None,
         }
     }
@@ -56,7 +60,7 @@ impl Contestant {
             (Self::Device(tier), Some(gpu)) => Backend::Device(gpu, tier).judge(),
             (Self::Device(tier), None) => Judge::of(tier),
             (Self::CpuSingle, _) => Judge::of(Tier::Fast),
-            (Self::CpuDouble, _) => Backend::Reference.judge(),
+            (Self::Certified | Self::CpuDouble, _) => Backend::Reference.judge(),
         }
     }
 }
@@ -106,6 +110,10 @@ impl<'a> Runner<'a> {
                 let options = Options { device_clock: true, ..Options::default() };
                 let backend = Backend::Device(gpu, tier);
                 Renderer::Engine(Box::new(Engine::with(backend, viewed, effects, &options)?))
+            }
+            (Contestant::Certified, Some(gpu)) => {
+                let selection = Selection::of(&viewed, effects, Request::Certified, gpu.ladder());
+                Renderer::Engine(Box::new(Engine::new(Backend::of(Some(gpu), &selection), viewed, effects)?))
             }
             _ => Renderer::Engine(Box::new(Engine::new(Backend::Reference, viewed, effects)?)),
         };

@@ -208,7 +208,7 @@ pub fn study(input: &StudyInput, plan: &StudyPlan, mut hear: impl FnMut(Event)) 
     })?;
     hear(Event::Measured(&study));
 
-    contestants.retain(|contestant| *contestant != Contestant::CpuSingle);
+    contestants.retain(|contestant| matches!(contestant, Contestant::Device(_) | Contestant::CpuDouble));
     let depths = if plan.depths.is_empty() { (0..=effects.depth).collect() } else { plan.depths.clone() };
     let at_depth = |max_depth| Settings { max_depth, ..base };
     let deeper = at_depth((depths.iter().max().copied().unwrap_or(0) * 2).clamp(8, Settings::MAX_DEPTH));
@@ -305,7 +305,7 @@ fn warm_up<'a>(
     let mut runner = Runner::new(contestant, gpu, viewed, &effects)?;
     let run = runner.run()?;
     let linear = match contestant {
-        Contestant::Device(_) => None,
+        Contestant::Device(_) | Contestant::Certified => None,
         Contestant::CpuSingle => {
             let reference = Reference::<f32>::new(&scene.viewed(settings), &effects);
             Some(linear_colors(&reference, (scene.width, scene.height)))

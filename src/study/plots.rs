@@ -16,6 +16,7 @@ pub(super) fn class(contestant: Contestant) -> &'static str {
         Contestant::Device(Tier::Fast) => "c-fast",
         Contestant::Device(Tier::Robust) => "c-robust",
         Contestant::Device(Tier::Double) => "c-double",
+        Contestant::Certified => "c-certified",
         Contestant::CpuSingle => "c-single",
         Contestant::CpuDouble => "c-cpu",
     }

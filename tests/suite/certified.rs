@@ -7,7 +7,7 @@ use trueray::bench::Family;
 use trueray::effects::Effects;
 use trueray::engine::{Backend, Engine, Options, Pixels, Stages, render_picture};
 use trueray::film::{Format, Picture, Target};
-use trueray::gpu::{Gpu, GpuRenderer, Rows};
+use trueray::gpu::{Choice, Device, Gpu, GpuRenderer, Kernel, Mask, Quotients, Rows};
 use trueray::precision::{Request, Selection, Tier};
 use trueray::scene::Scene;
 use trueray::settings::{Settings, Specular};
@@ -162,6 +162,33 @@ fn lists_of_pixels_are_certified_too() {
     }
 }
 
+/// What Vulkan allows quotients and square roots to be off is counted; a device that is worse is found out.
+#[test]
+fn a_device_that_divides_badly_is_right_or_refused() {
+    let Some(gpu) = gpu("certified::a_device_that_divides_badly_is_right_or_refused") else { return };
+    drop(gpu);
+    for (units_off, is_refused) in [(0, false), (1, false), (8, true)] {
+        let mask = Mask { units_off, ..Mask::default() };
+        let gpu = Gpu::with(Device::masked(&Choice::Gpu, &mask).unwrap()).unwrap();
+        for (name, settings) in conventions() {
+            for file in ["hard/mirror-corridor.txt", "effects/everything.txt", "hard/needles.txt"] {
+                let scene = scene(&crate::support::root().join("scenes").join(file));
+                let (effects, selection) = selection(&gpu, &scene, &settings);
+                if !is_refused {
+                    assert_certified(&format!("{file}, {name}, {units_off} off"), &gpu, &scene, &settings, NEVER);
+                    continue;
+                }
+                let backend = Backend::of(Some(&gpu), &selection);
+                let error = Engine::<Rows>::new(backend, scene.viewed(&settings), &effects).unwrap_err();
+                assert!(error.to_string().contains("quotients are off by up to 8."), "{error}");
+            }
+        }
+        let measured = Quotients::measure(&gpu, Kernel::Tier(Tier::Fast)).unwrap();
+        let most = 1.1 * f64::from(units_off) + 0.6;
+        assert!(measured.quotient <= most && measured.root <= most, "{measured:?}");
+    }
+}
+
 /// What `fast` covers, or nearly so, it begins; elsewhere `double` does.
 #[test]
 fn the_first_kernel_is_one_that_is_mostly_sure() {
@@ -279,10 +306,11 @@ fn a_certificate_is_of_one_picture() {
     assert_run(path, "render -q --device cpu --certificate cpu.json scene.txt -o cpu.ppm", 0, "");
     assert!(std::fs::read(path.join("a.ppm")).unwrap() == std::fs::read(path.join("cpu.ppm")).unwrap());
     let (own, cpu) = (json("a.json"), json("cpu.json"));
-    for part in ["program", "scene", "settings", "effects", "depth", "picture"] {
+    for part in ["program", "system", "cpu", "scene", "settings", "effects", "depth", "picture"] {
         assert!(own[part] == cpu[part] && !own[part].is_null(), "{part}: {own}\n{cpu}");
     }
     assert_eq!(own["device"], device);
+    assert_eq!(own["roundings"]["quotient_units"], 2.5);
     assert_eq!((&own["picture"]["width"], &own["picture"]["height"]), (&64.into(), &48.into()));
     let all: u64 = ["kernel", "double", "reference"].iter().map(|stage| own["stages"][stage].as_u64().unwrap()).sum();
     assert_eq!((all, &cpu["stages"]["reference"]), (64 * 48, &(64 * 48).into()));

@@ -9,8 +9,8 @@ use trueray::effects::Effects;
 use trueray::engine::Backend;
 use trueray::precision::{Demand, Request, Selection, Tier};
 use trueray::settings::Settings;
+use trueray::stress::scene_kinds;
 
-use crate::families::kinds;
 use crate::support::{gpu, gpu_picture, is_set, root, scene};
 
 /// The seed of the scenes.
@@ -28,7 +28,7 @@ fn covered_pictures_differ_from_double_in_one_pixel_of_ten_thousand() {
     let Some(gpu) = gpu("covered_pictures_differ_from_double_in_one_pixel_of_ten_thousand") else { return };
     let is_whole = is_set("TRUERAY_COVERAGE");
     let conventions = [("classic", Settings::classic()), ("exact", Settings::exact())];
-    let kinds = kinds();
+    let kinds = scene_kinds();
     assert!(kinds.len() >= 100, "{}", kinds.len());
     let mut wrong = Vec::new();
     // Of each tier: pictures that it covers, their pixels, and how many of these differ.
@@ -91,7 +91,7 @@ fn auto_says_what_takes_it_to_another_tier() {
     let select = |scene: &trueray::scene::Scene| {
         Selection::of(&scene.viewed(&settings), &Effects::of(&scene.viewed(&settings)), Request::Auto, &Tier::ALL)
     };
-    let kinds = kinds();
+    let kinds = scene_kinds();
     let named = |name: &str| select(&kinds.iter().find(|kind| kind.name == name).unwrap().scene(SEED));
     for name in [
         "matte spheres",

@@ -6,6 +6,8 @@ use std::process::Command;
 
 use trueray::gpu::{drivers, kernel_cache};
 
+use crate::support::gpu;
+
 fn idle(devices: &Path, variables: &[&str]) -> Option<&'static str> {
     drivers::idle_without(devices, variables.iter().map(OsString::from))
 }
@@ -44,7 +46,7 @@ fn the_same_devices_are_listed_with_all_drivers_loaded() {
 /// On a software device the cache of compiled kernels has to be asked for; it then behaves as on any other.
 #[test]
 fn compiled_kernels_are_kept_and_a_damaged_file_is_told_and_replaced() {
-    let Some(gpu) = crate::support::gpu("compiled_kernels_are_kept_and_a_damaged_file_is_told_and_replaced") else {
+    let Some(gpu) = gpu("compiled_kernels_are_kept_and_a_damaged_file_is_told_and_replaced") else {
         return;
     };
     let (index, grows) = (gpu.device.info.index, gpu.device.info.driver.contains("SwiftShader"));
@@ -153,7 +155,7 @@ fn a_device_that_is_chosen_by_mesas_variables_is_obeyed() {
 
     let layer = "/usr/share/vulkan/implicit_layer.d/VkLayer_MESA_device_select.json";
     let test = "a_device_that_is_chosen_by_mesas_variables_is_obeyed";
-    if crate::support::gpu(test).is_none() || !Path::new(layer).exists() {
+    if gpu(test).is_none() || !Path::new(layer).exists() {
         return crate::support::say_skipped(test, "no device, or Mesa's layer is not there");
     }
     let list = |choose: bool| {
@@ -164,4 +166,34 @@ fn a_device_that_is_chosen_by_mesas_variables_is_obeyed() {
     };
     assert!(list(true).contains("selectable devices"));
     assert!(!list(false).contains("selectable devices"));
+}
+
+/// What a report of a fault has to tell of a device and its driver.
+#[test]
+fn a_device_tells_what_vulkan_says_of_it() {
+    if gpu("a_device_tells_what_vulkan_says_of_it").is_none() {
+        return;
+    }
+    let mut command = Command::new(env!("CARGO_BIN_EXE_trueray"));
+    let output = command.args(["devices", "--json"]).output().unwrap();
+    let all: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    for device in all.as_array().unwrap().iter().filter(|device| device.get("index").is_some()) {
+        let vulkan = &device["vulkan"];
+        let text = |pointer: &str| vulkan.pointer(pointer).and_then(|it| it.as_str()).unwrap_or_default().to_owned();
+        assert!(text("/api_version").split('.').count() == 3, "{vulkan}");
+        assert!(["/vendor_id", "/device_id"].iter().all(|id| text(id).starts_with("0x")), "{vulkan}");
+        if text("/api_version").as_str() >= "1.2" {
+            assert_eq!(text("/driver/conformance_version").split('.').count(), 4, "{vulkan}");
+            assert!(["/ids/device_uuid", "/ids/driver_uuid"].iter().all(|id| text(id).len() == 32), "{vulkan}");
+            // wgpu knows the driver by the same words.
+            let driver = format!("{} {}", text("/driver/name"), text("/driver/info"));
+            assert_eq!(device["driver"], driver.trim(), "{vulkan}");
+            let widths = vulkan["float_controls"]["signed_zero_inf_nan_preserve"].as_array().unwrap();
+            assert!(widths.iter().all(|width| [16, 32, 64].iter().any(|it| width == it)), "{vulkan}");
+        }
+        let has_f64 = vulkan["scalars"].as_array().unwrap().iter().any(|scalar| scalar == "f64");
+        assert!(has_f64 || device["f64"] == false, "{vulkan}");
+        let most = vulkan["limits"]["max_compute_work_group_invocations"].as_u64().unwrap();
+        assert!(most >= device["max_invocations"].as_u64().unwrap(), "{vulkan}");
+    }
 }

@@ -230,6 +230,7 @@ impl MulAssign for Loose {
 }
 
 impl Real for Loose {
+    const PROVES: bool = false;
     const ZERO: Self = Self(0.0);
     const ONE: Self = Self(1.0);
     const FAR: Self = Self(f32::FAR);

@@ -157,9 +157,10 @@ fn modules() -> Vec<Module> {
     });
     let others = [Module::between_bounces(), Module::flood(), Module::selftest()];
     let others = others.into_iter().chain(Fill::ALL.map(Module::fill));
-    let each = kernels
-        .iter()
-        .flat_map(|&kernel| [Module::probe(kernel), Module::resolve(kernel), Module::echo(kernel, Tables::Stored)]);
+    let each = kernels.iter().flat_map(|&kernel| {
+        let echo = Module::echo(kernel, Tables::Stored);
+        [Module::probe(kernel), Module::resolve(kernel), Module::quotients(kernel), echo]
+    });
     pictures.chain(others).chain(each).collect()
 }
 

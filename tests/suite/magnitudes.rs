@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use glam::DVec3;
-use trueray::cpu::{Reference, picked};
+use trueray::cpu::{Reference, Tally, picked};
 use trueray::effects::Effects;
 use trueray::exact::ExactScene;
 use trueray::gpu::{Gpu, GpuRenderer, Kernel, Rows};
@@ -62,6 +62,18 @@ fn is_refused(gpu: &Gpu, kernel: Kernel, scene: &Scene, settings: &Settings) -> 
 fn differing(a: &[u8], b: &[u8]) -> usize {
     assert_eq!(a.len(), b.len());
     a.chunks(3).zip(b.chunks(3)).filter(|(a, b)| a != b).count()
+}
+
+/// Which do, in pictures of this width.
+fn pixels_that_differ(a: &[u8], b: &[u8], width: u32) -> Vec<[u32; 2]> {
+    let differing = a.chunks(3).zip(b.chunks(3)).enumerate().filter(|(_, (a, b))| a != b);
+    differing.map(|(index, _)| [index as u32 % width, index as u32 / width]).collect()
+}
+
+/// What the reference's pixel took.
+fn tally(scene: &Scene, settings: &Settings, pixel: [u32; 2]) -> Tally {
+    let viewed = scene.viewed(settings);
+    Reference::<f64>::new(&viewed, &Effects::of(&viewed)).pixels(&[pixel], &mut [[0; 3]]).unwrap()
 }
 
 /// Some spheres ahead of the eye with a mirror or two, and lights.
@@ -217,11 +229,13 @@ fn lists_hold_at_every_magnitude_and_tier() {
             rendered += 1;
             assert_eq!(differing(&lists, &all), 0, "{kernel:?}, scene {seed}");
             if kernel == Kernel::Tier(Tier::Double) {
-                // With what exact arithmetic decides.
+                // With what exact arithmetic decides, where `f64` has bits enough.
                 let (double, _) =
                     gpu_picture(&gpu, Tier::Double, &scene, &settings, &Effects::of(&scene.viewed(&settings)));
                 let expected = cpu(&scene, &settings, Rounding::DOUBLE);
-                assert_eq!(differing(double.rgb(), &expected), 0, "scene {seed}");
+                let wrong = pixels_that_differ(double.rgb(), &expected, scene.width);
+                let unexplained = wrong.iter().filter(|&&pixel| tally(&scene, &settings, pixel).more_bits == 0);
+                assert_eq!(unexplained.count(), 0, "scene {seed}");
             }
         }
         // Single precision refuses more of them.
@@ -287,26 +301,26 @@ fn shadows_of_a_far_light_do_not_depend_on_its_distance() {
 }
 
 /// A file's numbers times a power of two are the same picture, byte for byte, and so are the effects that `auto` leaves out. But where a
-/// ray touches a sphere: the decimals of the product are others, of which it may miss it.
+/// ray touches a sphere, or a light lies on one: the decimals of the product are others, of which it may miss it.
 #[test]
 fn no_picture_depends_on_its_units() {
     for file in scene_files(&["basic", "effects", "hard", "refraction", "show"]) {
-        let mut scene = scene(&file);
-        (scene.width, scene.height) = (40, 30);
+        let mut original = scene(&file);
+        (original.width, original.height) = (40, 30);
         for base in [Settings::classic(), Settings::exact()] {
-            let expected = cpu(&scene, &base, Rounding::DOUBLE);
-            let exact = ExactScene::new(&scene.viewed(&base), true);
+            let expected = cpu(&original, &base, Rounding::DOUBLE);
+            let exact = ExactScene::new(&original.viewed(&base), true);
             for exponent in [-900, -480, -100, -30, 30, 100, 480, 900] {
                 let factor = 2_f64.powi(exponent);
                 let Secondary { shadow, reflection } = base.secondary;
                 let settings = Settings { secondary: Secondary { shadow, reflection: reflection * factor }, ..base };
-                let scene = scaled(&scene, factor);
+                let scene = scaled(&original, factor);
                 assert_eq!(limits::problem(&scene.viewed(&settings), &Effects::of(&scene.viewed(&settings))), None);
                 let actual = cpu(&scene, &settings, Rounding::DOUBLE);
-                for (index, _) in actual.chunks(3).zip(expected.chunks(3)).enumerate().filter(|(_, (a, b))| a != b) {
-                    let pixel = [index as u32 % scene.width, index as u32 / scene.width];
+                for pixel in pixels_that_differ(&actual, &expected, scene.width) {
                     let touches = (0..scene.spheres.len()).any(|s| exact.discriminant(pixel, s) == Ordering::Equal);
-                    assert!(touches, "{} times 2^{exponent}, pixel {pixel:?}", file.display());
+                    let ties = tally(&original, &base, pixel).undecided > 0;
+                    assert!(touches || ties, "{} times 2^{exponent}, pixel {pixel:?}", file.display());
                 }
             }
         }

@@ -74,7 +74,9 @@ fn a_study_has_every_point_and_its_errors_shrink() {
     assert_eq!(names, expected);
     assert_eq!(study.skipped.len(), Contestant::ALL.len() - expected.len());
 
-    let varied = expected.len() - 1; // without CPU f32
+    let varied = expected.len() - 2; // without certified and CPU f32
+    let certified = study.precision.points.iter().find(|point| point.contestant == Contestant::Certified).unwrap();
+    assert_eq!(certified.error.differing, 0);
     assert_eq!(study.depth.points.len(), varied * 4);
     assert_eq!(study.samples.points.len(), varied * 2);
     for series in [&study.precision, &study.depth, &study.samples] {
@@ -132,7 +134,7 @@ fn a_study_says_what_samples_of_a_part_of_the_pixels_cost() {
 fn a_study_without_a_device_says_what_it_skips() {
     let study = measure(&tiny(), None, &Settings::classic());
     let skipped: Vec<_> = study.skipped.iter().map(|skipped| skipped.name.as_str()).collect();
-    assert_eq!(skipped, ["fast", "robust", "double"]);
+    assert_eq!(skipped, ["fast", "robust", "double", "certified"]);
     assert!(study.report().contains("not measured: fast: no Vulkan device is used"));
     assert!(html(&[study], None, "trueray").contains("no Vulkan device is used"));
 }

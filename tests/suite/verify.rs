@@ -16,7 +16,7 @@ const SCENE: &str = "NEAR 1\nLEFT -1\nRIGHT 1\nBOTTOM -1\nTOP 1\nRES 64 48\nSPHE
 const OLD: &[u8] = b"the picture that was there";
 
 /// The faulty driver of `tests/suite/faulty_driver.c` before lavapipe, with a scene.
-struct Driver {
+pub(crate) struct Driver {
     folder: TempDir,
     /// lavapipe's library.
     inner: String,
@@ -26,7 +26,7 @@ struct Driver {
 
 impl Driver {
     /// None, said aloud, where there is no lavapipe or nothing that compiles C.
-    fn new(test: &str) -> Option<Self> {
+    pub(crate) fn new(test: &str) -> Option<Self> {
         drop(gpu(test)?);
         let Some(inner) = lavapipe() else {
             say_skipped(test, "lavapipe is not installed where it usually is");
@@ -57,24 +57,36 @@ impl Driver {
         Some(driver)
     }
 
-    /// Renders with a fault: exit code, messages, and the file that was to be replaced.
-    fn run(&self, fault: &str, options: &str) -> (Option<i32>, String, Vec<u8>) {
-        let work = self.folder.path().join("work");
-        let picture = work.join("out.ppm");
-        fs::write(&picture, OLD).unwrap();
-        let output = Command::new(env!("CARGO_BIN_EXE_trueray"))
-            .args(["render", "scene.txt", "-o", "out.ppm", "--quiet", "--device", "gpu"])
-            .args(options.split_whitespace())
-            .current_dir(&work)
+    /// The folder in which the program runs.
+    pub(crate) fn work(&self) -> PathBuf {
+        self.folder.path().join("work")
+    }
+
+    /// The program with a fault.
+    pub(crate) fn command(&self, arguments: &str, fault: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_trueray"));
+        command
+            .args(arguments.split_whitespace())
+            .current_dir(self.work())
             .env("VK_DRIVER_FILES", self.folder.path().join("driver.json"))
             .env("INNER", &self.inner)
             .env("FAULT", fault)
+            .stdin(Stdio::null());
+        command
+    }
+
+    /// Renders with a fault: exit code, messages, and the file that was to be replaced.
+    fn run(&self, fault: &str, options: &str) -> (Option<i32>, String, Vec<u8>) {
+        let work = self.work();
+        let picture = work.join("out.ppm");
+        fs::write(&picture, OLD).unwrap();
+        let output = self
+            .command(&format!("render scene.txt -o out.ppm --quiet --device gpu {options}"), fault)
             // What does not answer here never will.
             .env(
                 "TRUERAY_PATIENCE",
                 if fault.ends_with("drop") && fault.starts_with("vkQueueSubmit") { "1" } else { "120" },
             )
-            .stdin(Stdio::null())
             .output()
             .unwrap();
         let stderr = String::from_utf8_lossy(&output.stderr).into_owned();

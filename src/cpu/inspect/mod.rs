@@ -57,9 +57,16 @@ impl Inspector {
     fn record(&self, i: u32, j: u32, detail: Detail) -> PixelRecord {
         let world = &self.reference.world;
         let (mut samples, mut colors) = (Vec::new(), Vec::new());
+        let (mut more_bits, mut undecided) = (false, false);
         for primary in self.reference.primaries(i, j) {
             let mut recorder = Recorder::new(self.units, &self.distinct, detail, primary.sample);
-            let color = trace(world, &primary, &mut recorder);
+            let color = match self.reference.open_decisions(&primary) {
+                None => trace(world, &primary, &mut recorder),
+                Some((mut decisions, is_open)) => {
+                    (more_bits, undecided) = (true, undecided | is_open);
+                    trace(world, &primary, &mut (&mut decisions, &mut recorder))
+                }
+            };
             colors.push(color);
             samples.push(recorder.finish(color));
         }
@@ -82,6 +89,8 @@ impl Inspector {
             scaled: color.to_f64().to_array().map(|c| quantize.scale() * c.clamp(0.0, 1.0) + quantize.bias()),
             levels: Levels::new(quantize).levels(color),
             decisions: least.sorted(),
+            more_bits,
+            undecided,
         }
     }
 }

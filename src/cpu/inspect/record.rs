@@ -15,6 +15,10 @@ pub struct PixelRecord {
     pub scaled: [f64; 3],
     /// The levels.
     pub levels: [u8; 3],
+    /// Whether `f64` leaves a decision open, so that double-double has taken them all,
+    pub more_bits: bool,
+    /// and whether that leaves one open, too, which goes by the rules for ties.
+    pub undecided: bool,
     /// Of each kind of decision the one that the least change would turn, nearest first.
     pub decisions: Vec<Margin>,
 }

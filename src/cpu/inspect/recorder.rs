@@ -1,5 +1,7 @@
 //! Writes down what the tracer does, as its witness: it decides nothing.
 
+use std::cmp::Ordering;
+
 use super::margins::{Distinct, Least, Search, shadow_margin};
 use super::record::{
     Blocker, HitRecord, LightRecord, Margin, RayKind, RayRecord, SampleRecord, ShadowRecord, SnellRecord, TestRecord,
@@ -36,7 +38,7 @@ struct Next {
 /// The tests of the search in hand.
 #[derive(Debug, Clone, Copy)]
 enum Tested {
-    Other(Shape<f64>, Approach<f64>),
+    Other(Shape<f64>, Approach<f64>, Option<Ordering>),
     Own(Shape<f64>, Own<f64>, f64),
     Crossed(Shape<f64>, Approach<f64>, bool),
 }
@@ -44,7 +46,7 @@ enum Tested {
 impl Tested {
     fn shape(&self) -> &Shape<f64> {
         match self {
-            Self::Other(shape, _) | Self::Own(shape, ..) | Self::Crossed(shape, ..) => shape,
+            Self::Other(shape, ..) | Self::Own(shape, ..) | Self::Crossed(shape, ..) => shape,
         }
     }
 }
@@ -163,8 +165,17 @@ fn verdict(root: Option<(f64, bool)>, index: usize, hit: Option<&Hit<f64>>) -> V
 }
 
 impl Witness<f64> for Recorder<'_> {
-    fn tested(&mut self, _ray: &Ray<f64>, shape: &Shape<f64>, at: &Approach<f64>, _range: &Range<f64>) {
-        self.note(Tested::Other(*shape, *at));
+    fn tested(
+        &mut self,
+        _ray: &Ray<f64>,
+        shape: &Shape<f64>,
+        at: &Approach<f64>,
+        _range: &Range<f64>,
+        sign: Option<Ordering>,
+        _root: Option<(f64, bool)>,
+    ) {
+        // As the tracer has it: whether a primary ray touches is decided exactly.
+        self.note(Tested::Other(*shape, *at, sign));
     }
 
     fn tested_own(&mut self, _ray: &Ray<f64>, own: &Own<f64>, shape: &Shape<f64>, t: f64, _range: &Range<f64>) {
@@ -193,7 +204,7 @@ impl Witness<f64> for Recorder<'_> {
     ) -> Option<Hit<f64>> {
         let Next { kind, parent, bounces, weight, units } = self.next;
         self.ray_units = units;
-        let (tests, test_count) = self.take_tests(|recorder, tested| match tested {
+        let (tests, test_count) = self.take_tests(|_, tested| match tested {
             Tested::Own(shape, own, t) => {
                 let test = own_test(&units, ray, shape, own, *t);
                 let counts = own.inside && *t > range.t_min && *t < range.t_max;
@@ -204,15 +215,19 @@ impl Witness<f64> for Recorder<'_> {
                 };
                 TestRecord { verdict, ..test }
             }
-            Tested::Other(shape, at) | Tested::Crossed(shape, at, _) => {
+            Tested::Crossed(shape, at, _) => units.test(at, shape),
+            Tested::Other(shape, at, sign) => {
                 let test = units.test(at, shape);
-                // As the tracer has it: whether a primary ray touches is decided exactly.
-                let decided = if own.is_none() {
-                    world.tangents.decided(*at, shape, || world.exact.discriminant(recorder.sample, test.sphere))
-                } else {
-                    *at
+                let decided = at.decided(*sign);
+                let Some(both) = roots(&decided, shape.radius) else {
+                    // What more bits have found out.
+                    let taken = hit.filter(|hit| hit.sphere == test.sphere).map(|hit| (hit.t, hit.inside));
+                    return if taken.is_some() {
+                        TestRecord { verdict: verdict(taken, test.sphere, hit.as_ref()), ..test }
+                    } else {
+                        test
+                    };
                 };
-                let Some(both) = roots(&decided, shape.radius) else { return test };
                 let verdict = verdict(least_of(both, range), test.sphere, hit.as_ref());
                 TestRecord { roots: Some([units.t(both.0), units.t(both.1)]), verdict, ..test }
             }
@@ -311,7 +326,7 @@ impl Witness<f64> for Recorder<'_> {
                 let passed = if own.inside { Verdict::Passed } else { Verdict::Left };
                 TestRecord { verdict: if blocks { Verdict::Blocks } else { passed }, ..test }
             }
-            Tested::Other(shape, at) => units.test(at, shape),
+            Tested::Other(shape, at, _) => units.test(at, shape),
             Tested::Crossed(shape, at, blocks) => {
                 let roots = roots(at, shape.radius).map(|(lesser, greater)| [lesser, greater]);
                 let passed = if roots.is_some() { Verdict::Passed } else { Verdict::Missed };

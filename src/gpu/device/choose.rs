@@ -9,6 +9,7 @@ use super::error::Error;
 use super::guard::guarded;
 use super::info::DeviceInfo;
 use super::mask::Offer;
+use super::vulkan::VulkanInfo;
 
 /// Which device renders.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -73,7 +74,10 @@ fn adapters() -> Result<(wgpu::Instance, Adapters), Error> {
     let adapters = adapters
         .into_iter()
         .enumerate()
-        .map(|(i, adapter)| (DeviceInfo::new(i, adapter.get_info(), &Offer::of(&adapter)), adapter))
+        .map(|(i, adapter)| {
+            let info = DeviceInfo::new(i, adapter.get_info(), VulkanInfo::of(&adapter), &Offer::of(&adapter));
+            (info, adapter)
+        })
         .collect();
     Ok((instance, adapters))
 }

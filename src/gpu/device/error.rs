@@ -40,12 +40,8 @@ pub enum Error {
     ArithmeticRefused {
         /// The device.
         device: String,
-        /// Pairs of operands that were tried.
-        pairs: usize,
-        /// Those whose sum is off.
-        sums: usize,
-        /// Those whose product is off.
-        products: usize,
+        /// What it is not.
+        why: String,
     },
     /// The loops of the kernels have too few turns for some pixels.
     Cut {
@@ -112,11 +108,7 @@ impl fmt::Display for Error {
                 let help = "help: --precision double can, where the device has f64";
                 write!(f, "{kernel} cannot render this scene: {why}\n  {help}")
             }
-            Self::ArithmeticRefused { device, pairs, sums, products } => write!(
-                f,
-                "{device} does not keep error-free transforms: of {pairs} pairs, {sums} sums and {products} products are \
-                 off. Precision `robust` needs them, and `double` where a device has no f64"
-            ),
+            Self::ArithmeticRefused { device, why } => write!(f, "{device}: {why}"),
             Self::Cut { device, pixels } => {
                 write!(f, "{pixels} pixels need more turns of a loop than {device} has for them")
             }

@@ -1,6 +1,7 @@
 //! What is known of a device before it is opened.
 
 use super::mask::Offer;
+use super::vulkan::VulkanInfo;
 use std::fmt;
 
 use serde::Serialize;
@@ -86,10 +87,17 @@ pub struct DeviceInfo {
     pub max_storage_buffers: u32,
     /// Greatest number of storage textures that a kernel reads and writes.
     pub max_storage_textures: u32,
+    /// What Vulkan says of it.
+    pub vulkan: VulkanInfo,
 }
 
 impl DeviceInfo {
-    pub(super) fn new(index: usize, info: wgpu::AdapterInfo, Offer { features, limits }: &Offer) -> Self {
+    pub(super) fn new(
+        index: usize,
+        info: wgpu::AdapterInfo,
+        vulkan: VulkanInfo,
+        Offer { features, limits }: &Offer,
+    ) -> Self {
         Self {
             index,
             name: info.name,
@@ -104,6 +112,7 @@ impl DeviceInfo {
             max_uniform: limits.max_uniform_buffer_binding_size,
             max_storage_buffers: limits.max_storage_buffers_per_shader_stage,
             max_storage_textures: limits.max_storage_textures_per_shader_stage,
+            vulkan,
         }
     }
 

@@ -1,4 +1,4 @@
-//! A device that is taken to offer less than it does, to see what the program does without.
+//! A device that is taken to offer less than it does, or to calculate worse, to see what the program makes of it.
 
 /// What is masked; the default is nothing.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -21,6 +21,8 @@ pub struct Mask {
     pub uniform_bytes: Option<u64>,
     /// Invocations of a workgroup at the most.
     pub invocations: Option<u32>,
+    /// So many units in the last place its quotients and square roots are too small, where it takes SPIR-V.
+    pub units_off: u32,
 }
 
 /// What an adapter offers.

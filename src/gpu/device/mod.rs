@@ -13,3 +13,4 @@ pub(crate) mod open;
 pub(crate) mod readable;
 pub(crate) mod timestamps;
 pub(crate) mod upload;
+pub(crate) mod vulkan;

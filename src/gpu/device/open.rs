@@ -23,6 +23,8 @@ pub struct Device {
     pub(crate) mappable: bool,
     /// Whether it takes SPIR-V, which alone says how to round.
     pub(crate) takes_spirv: bool,
+    /// So many units in the last place its quotients and square roots are made too small.
+    pub(crate) units_off: u32,
     failure: Arc<Mutex<Option<Failure>>>,
     /// Why nothing can be asked of it any more.
     end: OnceLock<String>,
@@ -58,17 +60,18 @@ impl Device {
         Self::masked(choice, &Mask::default())
     }
 
-    /// The same, taken to offer less than it does.
+    /// The same, taken to offer less than it does or to calculate worse.
     pub fn masked(choice: &Choice, mask: &Mask) -> Result<Self, Error> {
         let (info, adapter) = chosen(choice)?;
         let offer = Offer::of(&adapter).masked(mask);
-        let info = DeviceInfo::new(info.index, adapter.get_info(), &offer);
+        let info = DeviceInfo::new(info.index, adapter.get_info(), info.vulkan, &offer);
         let opened = info.clone();
         let _call = Call::begin();
-        guarded(|| Self::open_adapter(opened, &adapter, offer)).unwrap_or_else(|why| Err(does_not_open(&info, &why)))
+        guarded(|| Self::open_adapter(opened, &adapter, offer, mask.units_off))
+            .unwrap_or_else(|why| Err(does_not_open(&info, &why)))
     }
 
-    fn open_adapter(info: DeviceInfo, adapter: &wgpu::Adapter, offer: Offer) -> Result<Self, Error> {
+    fn open_adapter(info: DeviceInfo, adapter: &wgpu::Adapter, offer: Offer, units_off: u32) -> Result<Self, Error> {
         let shares_memory = matches!(info.kind, DeviceKind::Software | DeviceKind::Integrated);
         let mut features = wgpu::Features::SHADER_F64
             | wgpu::Features::SHADER_INT64
@@ -104,7 +107,7 @@ impl Device {
         device.set_device_lost_callback(move |_, message| note(&slot, Failure::Broken(message)));
         let mappable = features.contains(wgpu::Features::MAPPABLE_PRIMARY_BUFFERS);
         let takes_spirv = features.contains(wgpu::Features::PASSTHROUGH_SHADERS);
-        Ok(Self { info, raw: device, queue, mappable, takes_spirv, failure, end: OnceLock::new() })
+        Ok(Self { info, raw: device, queue, mappable, takes_spirv, units_off, failure, end: OnceLock::new() })
     }
 
     /// Gives the device up: whatever is still asked of it fails as lost.

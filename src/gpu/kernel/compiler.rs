@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use super::bindings::Binding;
 use super::cache::KernelCache;
+use super::inexact::made_inexact;
 use super::spirv::ParsedModule;
 use crate::gpu::device::error::Error;
 use crate::gpu::device::open::Device;
@@ -28,7 +29,10 @@ impl Compiler<'_> {
         if !self.device.takes_spirv {
             return Ok((self.translated(specialised)?, bindings));
         }
-        let words = module.spirv(&specialised, entry_point).map_err(Error::Shader)?;
+        let mut words = module.spirv(&specialised, entry_point).map_err(Error::Shader)?;
+        if self.device.units_off > 0 {
+            words = made_inexact(words, self.device.units_off).map_err(Error::Shader)?;
+        }
         let module = self.device.checked("reading the shader", || {
             #[allow(
                 unsafe_code,

@@ -29,7 +29,7 @@ files! {
     "difference_f32" "difference_f64" "distance_pair" "distance_real" "echo" "effects" "eft" "elementary_f32"
     "elementary_f64" "entry_copied" "entry_shared" "fill" "filled_nearest" "filled_smooth" "film_pixels" "film_samples"
     "flood" "grid" "intersect" "jump" "kernel_plain" "kernel_robust" "kernel_schoolbook" "path_in_place" "path_kept"
-    "path_tree" "probe" "quantize" "queue" "ray_plain" "ray_robust" "real_f32" "real_f64" "reflect" "refract" "resolve"
+    "path_tree" "probe" "quantize" "queue" "quotients" "ray_plain" "ray_robust" "real_f32" "real_f64" "reflect" "refract" "resolve"
     "roots_pair" "roots_single" "scene_ranges" "scene_tables" "search_all" "search_lists" "secondary_both" "secondary_grid"
     "secondary_large" "selftest" "shade" "slots_list" "slots_tiles" "tables_buffers" "tables_textures" "texels"
     "texture_sampled" "texture_stored" "trace" "types" "vectors_f32" "vectors_f64" "waiting_cones" "waiting_none" "walk_at_once" "walk_in_turn"

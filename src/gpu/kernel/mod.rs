@@ -6,6 +6,7 @@ pub mod cache;
 pub(crate) mod compiler;
 mod compose;
 pub(crate) mod entry;
+mod inexact;
 mod inline;
 mod listing;
 pub(crate) mod module;

@@ -52,6 +52,11 @@ impl Module {
         Self::of(&["selftest"], &Variant::of_ranges(Kernel::Tier(Tier::Robust)))
     }
 
+    /// The module that divides and takes square roots in the numbers of `kernel`.
+    pub fn quotients(kernel: Kernel) -> Self {
+        Self::of(&["quotients"], &Variant::of_ranges(kernel))
+    }
+
     /// The module that writes back what it reads.
     pub fn echo(kernel: Kernel, tables: Tables) -> Self {
         Self::of(&["echo"], &Variant { storage: Storage::Tables(tables), ..Variant::of_ranges(kernel) })

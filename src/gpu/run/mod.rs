@@ -4,4 +4,6 @@ mod compute;
 pub(super) mod echo;
 pub(super) mod fill;
 pub(super) mod probe;
+pub(super) mod quotients;
+mod record;
 pub(super) mod selftest;

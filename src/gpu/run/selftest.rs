@@ -1,11 +1,9 @@
 //! Whether error-free transforms survive this device's compiler and arithmetic: WGSL guarantees nothing, so it is tried.
 
-use std::path::PathBuf;
-
 use serde::Serialize;
 
 use super::compute::Job;
-use crate::cache;
+use super::record::Record;
 use crate::gpu::device::error::Error;
 use crate::gpu::facade::Gpu;
 use crate::gpu::kernel::module::Module;
@@ -29,9 +27,6 @@ pub struct SelfTest {
     pub product_mismatches: usize,
 }
 
-/// What the record of a pass says.
-const PASSED: &[u8] = b"passed\n";
-
 impl SelfTest {
     /// Transforms pairs on the device and compares bit for bit.
     pub fn run(gpu: &Gpu) -> Result<Self, Error> {
@@ -53,21 +48,20 @@ impl SelfTest {
 
     /// Refuses a device that fails; a device that passed with this driver and shader is not asked again.
     fn require(gpu: &Gpu) -> Result<(), Error> {
-        let record = record_of_pass(gpu);
-        if record.as_ref().is_some_and(|file| std::fs::read(file).is_ok_and(|text| text == PASSED)) {
+        let record = Record::of(gpu, "transforms", &Module::selftest());
+        if record.has_passed() {
             return Ok(());
         }
         let test = Self::run(gpu)?;
         if !test.passed() {
             let Self { pairs, sum_mismatches: sums, product_mismatches: products } = test;
-            return Err(Error::ArithmeticRefused { device: gpu.device.info.to_string(), pairs, sums, products });
+            let why = format!(
+                "it does not keep error-free transforms: of {pairs} pairs, {sums} sums and {products} products are off. Precision \
+                 `robust` needs them, and `double` where a device has no f64"
+            );
+            return Err(Error::ArithmeticRefused { device: gpu.device.info.to_string(), why });
         }
-        // Without a cache folder the test, which takes milliseconds, is simply made again.
-        if let Some(file) = record
-            && let Some(folder) = file.parent()
-        {
-            let _ = std::fs::create_dir_all(folder).and_then(|()| std::fs::write(&file, PASSED));
-        }
+        record.keep();
         Ok(())
     }
 }
@@ -82,15 +76,6 @@ impl Gpu {
             Tier::Double => SelfTest::require(self).map(|()| Kernel::Pairs),
         }
     }
-}
-
-/// The file that stands for a pass of this device, driver and shader, in the user's cache folder.
-fn record_of_pass(gpu: &Gpu) -> Option<PathBuf> {
-    let info = &gpu.device.info;
-    // wgpu's translation lets drivers fuse.
-    let way = if gpu.device.takes_spirv { "as written" } else { "translated" };
-    let key = cache::key(&[&info.name, &info.driver, &info.pci, way, &Module::selftest().text]);
-    Some(cache::folder()?.join(format!("transforms-{key}")))
 }
 
 /// Operands of all signs whose exponents differ by up to 40.

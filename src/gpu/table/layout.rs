@@ -56,6 +56,7 @@ pub struct ConeValues {
     pub allowance: f64,
     pub light_allowance: f64,
     pub background_levels: f64,
+    pub moved: f64,
 }
 
 /// Where the lists of spheres are.
@@ -181,6 +182,8 @@ macro_rules! layout {
                     light_allowance: $real,
                     /// Levels of the background, as a number.
                     background_levels: $real,
+                    /// What rounding takes of all places when the eye is moved to the origin.
+                    moved: $real,
                     /// To the size that WGSL gives the struct.
                     padding2: [u32; $params2],
                 }
@@ -317,6 +320,7 @@ macro_rules! layout {
                         allowance: Self::real(values.cones.allowance),
                         light_allowance: Self::real(values.cones.light_allowance),
                         background_levels: Self::real(values.cones.background_levels),
+                        moved: Self::real(values.cones.moved),
                         ..Params::zeroed()
                     }
                 }
@@ -380,11 +384,11 @@ macro_rules! layout {
 
 layout!(
     /// The structs of the `f32` kernels.
-    single, f32, params 0 0 1, shape 0, light 1, face 1
+    single, f32, params 0 0 0, shape 0, light 1, face 1
 );
 layout!(
     /// The structs of the `f64` kernels.
-    double, f64, params 1 2 2, shape 1, light 2, face 2
+    double, f64, params 1 2 0, shape 1, light 2, face 2
 );
 
 const _: () = {

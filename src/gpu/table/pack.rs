@@ -108,6 +108,7 @@ fn pack<'a, L: Layout + 'a>(
             allowance: accel.allowance,
             light_allowance: accel.light_allowance,
             background_levels: levels(scene.background),
+            moved: viewed.moved_by(),
         },
     };
     let has_ambient = on(Effect::Ambient);

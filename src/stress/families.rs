@@ -1,19 +1,20 @@
-//! Families of scenes, ordinary and hard, on which the promises of the tiers are tested by pictures.
+//! Kinds of scenes, ordinary and hard, on which promises are tested by whole pictures.
 
+use crate::bench::FAMILIES;
+use crate::random::Random;
+use crate::scene::{Light, Names, Scene, Sphere, Window};
 use glam::DVec3;
-use trueray::bench::FAMILIES;
-use trueray::scene::{Light, Names, Scene, Sphere, Window};
-use trueray::stress::Random;
 
 /// Scenes of one kind: each seed gives another.
-pub(crate) struct Kind {
+pub struct SceneKind {
+    /// What is in them, in words.
     pub name: String,
     build: Box<dyn Fn(&mut Random) -> Scene>,
 }
 
-impl Kind {
+impl SceneKind {
     /// The scene of this seed.
-    pub(crate) fn scene(&self, seed: u64) -> Scene {
+    pub fn scene(&self, seed: u64) -> Scene {
         let stream = self.name.bytes().fold(0, |hash: u64, byte| hash.wrapping_mul(31).wrapping_add(u64::from(byte)));
         let mut scene = (self.build)(&mut Random::new(seed, stream));
         (scene.sphere_names, scene.light_names) = (names('s', scene.spheres.len()), names('l', scene.lights.len()));
@@ -21,8 +22,8 @@ impl Kind {
     }
 }
 
-/// All families.
-pub(crate) fn kinds() -> Vec<Kind> {
+/// All kinds, more than a hundred.
+pub fn scene_kinds() -> Vec<SceneKind> {
     let mut kinds = Kinds(Vec::new());
     kinds.plain();
     kinds.floors();
@@ -38,11 +39,11 @@ pub(crate) fn kinds() -> Vec<Kind> {
     kinds.0
 }
 
-struct Kinds(Vec<Kind>);
+struct Kinds(Vec<SceneKind>);
 
 impl Kinds {
     fn add(&mut self, name: impl Into<String>, build: impl Fn(&mut Random) -> Scene + 'static) {
-        self.0.push(Kind { name: name.into(), build: Box::new(build) });
+        self.0.push(SceneKind { name: name.into(), build: Box::new(build) });
     }
 
     /// A few bodies of one material.
@@ -180,8 +181,11 @@ impl Kinds {
             ("clustered", &[100, 1_000]),
             ("huge", &[10, 100, 1_000]),
         ] {
-            let family = FAMILIES.iter().find(|family| family.name == name).unwrap();
-            for &size in sizes {
+            for (family, &size) in FAMILIES
+                .iter()
+                .filter(|family| family.name == name)
+                .flat_map(|it| sizes.iter().map(move |size| (it, size)))
+            {
                 self.add(format!("bench {name} {size}"), move |_| Scene { output: None, ..family.scene(size) });
             }
         }

@@ -1,0 +1,147 @@
+//! The reference's proof of its own decisions: it carries a bound of its errors along, and where that leaves a decision open the
+//! sample is traced in double-double, and then once more with the decisions of that.
+
+use super::bound::Bound;
+use super::dd::Dd;
+use super::intersect::{Primary, Range, Ray};
+use super::oracle::quotient;
+use super::real::Real;
+use super::render::{Reference, Tally, resolve};
+use super::replay::{Notes, Replay};
+use super::scene::{Glass, Material, PointLight, Shape, World};
+use super::ties::Ties;
+use super::trace::trace;
+use super::vec3::Vec3;
+use crate::camera::NEAR_T_MIN;
+use crate::decimal::Decimal;
+use crate::geometry::reciprocal_power_of_two;
+
+impl<T: Real> Reference<T> {
+    /// What proves the decisions of a pixel, one after the other.
+    pub(super) fn bound(&self) -> Bound<T, true> {
+        Bound::new(&self.world)
+    }
+
+    /// The unclamped colour of a pixel, with each decision proven where `T` does so.
+    pub(super) fn proven_color(&self, i: u32, j: u32, bound: &mut Bound<T, true>, tally: &mut Tally) -> Vec3<T> {
+        let side = self.camera.samples_per_side();
+        if !T::PROVES {
+            return resolve(self.primaries(i, j).map(|primary| trace(&self.world, &primary, tally)), side);
+        }
+        let (mut more_bits, mut undecided) = (false, false);
+        let samples = self.primaries(i, j).map(|primary| {
+            if primary.seen.is_empty() {
+                // No ray of the tile meets a sphere.
+                return self.world.background;
+            }
+            let color = self.bounded_color(&primary, bound, tally);
+            if bound.unsure.is_none() {
+                return color;
+            }
+            let (mut decisions, is_open) = self.decide(&primary);
+            (more_bits, undecided) = (true, undecided | is_open);
+            trace(&self.world, &primary, &mut decisions)
+        });
+        let color = resolve(samples, side);
+        tally.more_bits += u64::from(more_bits);
+        tally.undecided += u64::from(undecided);
+        color
+    }
+
+    /// The decisions of a sample that `T` leaves open, and whether double-double leaves one open, too; none where it does not.
+    pub(super) fn open_decisions(&self, primary: &Primary<T>) -> Option<(Replay, bool)> {
+        let mut bound = self.bound();
+        self.bounded_color(primary, &mut bound, &mut Tally::default());
+        bound.unsure.map(|_| self.decide(primary))
+    }
+
+    /// The colour of a sample, and in `bound` whether its decisions are sure.
+    #[inline]
+    fn bounded_color(&self, primary: &Primary<T>, bound: &mut Bound<T, true>, tally: &mut Tally) -> Vec3<T> {
+        bound.begin(T::from_f64(self.camera.direction_error(T::UNIT)));
+        trace(&self.world, primary, &mut (bound, tally))
+    }
+
+    /// The decisions of a sample in double-double, and whether that leaves one open.
+    #[cold]
+    fn decide(&self, primary: &Primary<T>) -> (Replay, bool) {
+        let world = self.exact_world.get_or_init(|| in_dd(&self.world));
+        let ray = Ray { origin: Vec3::ZERO, direction: world.exact.direction(primary.sample) };
+        let primary = Primary { ray, sample: primary.sample, seen: primary.seen };
+        let (mut ties, mut notes) = (Ties::new(world), Notes::default());
+        trace(world, &primary, &mut (&mut ties, &mut notes));
+        (notes.replay(), ties.bound.unsure.is_some())
+    }
+}
+
+/// `world` with its places as the decimals of the file say.
+fn in_dd<T: Real>(world: &World<T>) -> World<Dd> {
+    let exact = &world.exact;
+    let axes = |index: usize| {
+        let [center, semi_axes] = exact.sphere(index);
+        let largest = [semi_axes.y, semi_axes.z].into_iter().fold(semi_axes.x, |a, b| if b > a { b } else { a });
+        let k = Dd::from(reciprocal_power_of_two(largest.to_f64()));
+        (center, semi_axes, largest, k)
+    };
+    let shape = |(index, shape): (usize, &Shape<T>)| {
+        let (center, semi_axes, largest, k) = axes(index);
+        let ratios = quotient(Vec3::new(largest, largest, largest), semi_axes);
+        Shape { center, inv_scale: ratios * k, radius: largest * k, index: shape.index }
+    };
+    let material = |(index, material): (usize, &Material<T>)| {
+        let (_, semi_axes, largest, k) = axes(index);
+        let scale = quotient(semi_axes, Vec3::new(largest * k, largest * k, largest * k));
+        let [ka, kd, ks, kr, n] = [material.ka, material.kd, material.ks, material.kr, material.n].map(as_it_is);
+        Material { scale, color: Vec3::from_f64(material.color.to_f64()), ka, kd, ks, kr, n }
+    };
+    let glass = |glass: &Glass<T>| {
+        let eta = decimal(glass.eta);
+        Glass { kt: as_it_is(glass.kt), eta, inv_eta: Dd::ONE / eta }
+    };
+    let light = |(index, light): (usize, &PointLight<T>)| {
+        let (position, kernels) = (exact.light(index), light.position.to_f64());
+        // Lights out of reach have come nearer.
+        let has_moved = (position.to_f64() - kernels).length() > 1e-6 * kernels.length();
+        let position = if has_moved { Vec3::from_f64(kernels) } else { position };
+        PointLight { position, intensity: Vec3::from_f64(light.intensity.to_f64()) }
+    };
+    let range = |t_min, greater| Range { t_min, t_max: Dd::FAR, greater };
+    let primary = if world.primary.t_min > T::ZERO { exact.part(NEAR_T_MIN) } else { Dd::ZERO };
+    // The lists are of what `f64` has made of the file.
+    let allowance = |of: T| Dd::from(of.to_f64() - world.moved);
+    World {
+        shapes: world.shapes.iter().enumerate().map(shape).collect(),
+        materials: world.materials.iter().enumerate().map(material).collect(),
+        glasses: world.glasses.iter().map(glass).collect(),
+        lights: world.lights.iter().enumerate().map(light).collect(),
+        ambient: Vec3::from_f64(world.ambient.to_f64()),
+        background: Vec3::from_f64(world.background.to_f64()),
+        primary: range(primary, world.primary.greater),
+        shadow_t_min: decimal(world.shadow_t_min),
+        reflection: range(exact.length(world.reflection.t_min.to_f64()), world.reflection.greater),
+        refraction: range(decimal(world.refraction.t_min), world.refraction.greater),
+        shadows: world.shadows,
+        refracts: world.refracts,
+        specular: world.specular,
+        max_depth: world.max_depth,
+        allowance: allowance(world.allowance),
+        light_allowance: allowance(world.light_allowance),
+        ellipsoids: world.ellipsoids,
+        moved: world.moved,
+        middle: Vec3::from_f64(world.middle.to_f64()),
+        extent: as_it_is(world.extent),
+        accel: world.accel.clone(),
+        tangents: world.tangents,
+        exact: exact.clone(),
+    }
+}
+
+/// The decimal that a number of the file stands for.
+fn decimal<T: Real>(x: T) -> Dd {
+    Decimal::shortest(x.to_f64()).to_dd(0)
+}
+
+/// A number that decides nothing.
+fn as_it_is<T: Real>(x: T) -> Dd {
+    Dd::from(x.to_f64())
+}
