@@ -22,7 +22,7 @@ use super::vec3::{Vec3, largest, length};
 use super::witness::Witness;
 use crate::brightness::Scalar;
 use crate::roundings::{
-    ALONG, ANGLE, AXES, LENGTH, LOCAL, LOST, NEAR, NOTHING, PLACE, POWER, ROOT, ROOT_AT_EDGE, SQUARE, TERM,
+    ALONG, ANGLE, AXES, LENGTH, LOCAL, LOST, NEAR, NOTHING, PLACE, POWER, ROOT, ROOT_AT_EDGE, SQUARE, TERM, TIE,
 };
 use crate::settings::Specular;
 
@@ -226,15 +226,13 @@ impl<T: Real, const PROOF: bool> Bound<T, PROOF> {
         two::<T>() * (place + T::from_f64(3.0) * shape.radius * (stretch * self.slope / length)) / length
     }
 
-    /// What is known of the surface in a proof: in object space, where lengths are known beforehand or have simple bounds.
+    /// What is known of the surface of a true sphere, in a proof: as for any, where lengths are known beforehand or have simple bounds.
     #[inline]
-    fn proven_surface(&mut self, world: &World<T>, hit: &Hit<T>, at: &Approach<T>) {
+    fn sphere(&mut self, world: &World<T>, hit: &Hit<T>, at: &Approach<T>) {
         let shape = &world.shapes[hit.sphere];
-        let (stretch, greatest) = (largest(shape.inv_scale), largest(world.materials[hit.sphere].scale));
-        let radius = shape.radius;
+        let (stretch, greatest, radius) = (shape.inv_scale.x, world.materials[hit.sphere].scale.x, shape.radius);
         let way = size(at.origin) + radius;
-        let world_width = self.base + hit.t.abs() * self.slope + self.center * size(shape.center);
-        let stretched = stretch * world_width + self.place * way + self.local * radius;
+        let stretched = stretch * (self.base + hit.t.abs() * self.slope) + self.place * way + self.local * radius;
         let reach = two::<T>() * stretched * (radius + stretched);
         let rest = at.discriminant - reach;
         let aside = if rest > T::ZERO {
@@ -243,9 +241,8 @@ impl<T: Real, const PROOF: bool> Bound<T, PROOF> {
             T::from_f64(ROOT_AT_EDGE) * reach.sqrt() + stretched
         };
         let along = aside + self.roundings(ALONG) * (way + radius);
-        // The radius is at least 1, and so the gradient no shorter than the least stretch.
-        let turned = if world.ellipsoids { along * stretch / least(shape.inv_scale) } else { along };
-        self.normal = turned + self.roundings(ANGLE);
+        // The radius is at least 1.
+        self.normal = along + self.roundings(ANGLE);
         let place = size(shape.center) + greatest * radius;
         self.cone.position = greatest * along + self.roundings(ANGLE) * place + self.moved;
     }
@@ -434,8 +431,8 @@ impl<T: Real, const PROOF: bool> Witness<T> for Bound<T, PROOF> {
     }
 
     fn surface(&mut self, world: &World<T>, ray: &Ray<T>, hit: &Hit<T>, at: &Approach<T>, surface: &Surface<T>) {
-        if PROOF {
-            self.proven_surface(world, hit, at);
+        if PROOF && !world.ellipsoids {
+            self.sphere(world, hit, at);
             return;
         }
         let shape = &world.shapes[hit.sphere];
@@ -454,6 +451,9 @@ impl<T: Real, const PROOF: bool> Witness<T> for Bound<T, PROOF> {
             // w/|N·d| with N·d = √(a·discriminant)/|g|, of the least discriminant.
             let slant = length(ray.direction) / (at.a * rest).sqrt();
             slant * (T::from_f64(0.5) * reach)
+        } else if PROOF {
+            // The ray meets the sphere: half the chord is good to the root of its square's error.
+            greatest * (T::from_f64(ROOT_AT_EDGE) * reach.sqrt() + stretched)
         } else {
             self.mark(Decision::Silhouette);
             T::FAR
@@ -471,6 +471,9 @@ impl<T: Real, const PROOF: bool> Witness<T> for Bound<T, PROOF> {
         self.normal = turned + self.roundings(ANGLE);
         let place = size(shape.center) + greatest * shape.radius;
         self.cone.position = aside + shifted + self.roundings(ANGLE) * place + self.moved;
+        if PROOF {
+            return;
+        }
         if self.is_begun {
             self.add_term(largest(absolute(world.ambient * material.color)) * material.ka.abs(), T::ZERO);
         }
@@ -500,7 +503,7 @@ impl<T: Real, const PROOF: bool> Witness<T> for Bound<T, PROOF> {
         if is_unsure {
             self.mark(Decision::Terminator);
         }
-        is_lit && !(PROOF && !T::PROVES && is_unsure)
+        is_lit && !(is_unsure && is_tie::<T, PROOF>(n_dot_l))
     }
 
     #[inline]
@@ -561,7 +564,7 @@ impl<T: Real, const PROOF: bool> Witness<T> for Bound<T, PROOF> {
         let mut snell = snell;
         if !(square.abs() > square_error) {
             self.mark(Decision::CriticalAngle);
-            if PROOF && !T::PROVES {
+            if is_tie::<T, PROOF>(square) {
                 snell.square = T::ZERO;
             }
         }
@@ -587,9 +590,10 @@ impl<T: Real, const PROOF: bool> Witness<T> for Bound<T, PROOF> {
     }
 }
 
-/// The least component.
-fn least<T: Real>(v: Vec3<T>) -> T {
-    min(v.x, min(v.y, v.z))
+/// Whether a number that is known to differ from 0 by no more than its error is taken for 0: by who has the last word, where it is near
+/// enough.
+fn is_tie<T: Real, const PROOF: bool>(x: T) -> bool {
+    PROOF && !T::PROVES && x.abs() < T::from_f64(TIE)
 }
 
 /// Error of half a chord whose square is off by `squared`: |√x − √y| ≤ |x − y|/√x.

@@ -72,15 +72,24 @@ impl<T: Real> Witness<T> for Replay {
         hit: Option<Hit<T>>,
     ) -> Option<Hit<T>> {
         match self.0.pop() {
-            Some(Decided::Nearest(decided)) => {
-                decided.map(|Hit { t, sphere, inside }| Hit { t: T::from_f64(t), sphere, inside })
-            }
+            Some(Decided::Nearest(decided)) => decided.map(|decided| {
+                let Hit { t, sphere, inside } = decided;
+                // The tracer's own, where it has found the same.
+                let own = hit.filter(|hit| hit.sphere == sphere && hit.inside == inside);
+                own.unwrap_or(Hit { t: T::from_f64(t), sphere, inside })
+            }),
             _ => hit,
         }
     }
 
-    fn lit(&mut self, _: &World<T>, _: &Surface<T>, _: &PointLight<T>, _n_dot_l: T, is_lit: bool) -> bool {
-        if let Some(Decided::IsLit(decided)) = self.0.pop() { decided } else { is_lit }
+    fn lit(&mut self, _: &World<T>, _: &Surface<T>, _: &PointLight<T>, n_dot_l: T, is_lit: bool) -> bool {
+        let Some(Decided::IsLit(decided)) = self.0.pop() else { return is_lit };
+        // A light at the very point, for the tracer, has no direction.
+        let has_direction = n_dot_l.partial_cmp(&n_dot_l).is_some();
+        if decided && !has_direction && matches!(self.0.last(), Some(Decided::IsBlocked(_))) {
+            self.0.pop();
+        }
+        decided && has_direction
     }
 
     fn blocked(&mut self, _world: &World<T>, _ray: &Ray<T>, _own: &Own<T>, is_blocked: bool) -> bool {
@@ -90,7 +99,8 @@ impl<T: Real> Witness<T> for Replay {
     fn refracted(&mut self, _: &World<T>, _: &Surface<T>, snell: Snell<T>, _throughput: T) -> Snell<T> {
         match self.0.pop() {
             Some(Decided::IsTotal(is_total)) if is_total != snell.is_total() => {
-                Snell { square: if is_total { T::ZERO } else { T::from_f64(f64::MIN_POSITIVE) }, ..snell }
+                let square = if is_total { T::ZERO } else { T::from_f64(f64::MIN_POSITIVE) };
+                Snell { square, bend: snell.ratio * snell.cosine, ..snell }
             }
             _ => snell,
         }

@@ -9,8 +9,9 @@ use super::intersect::{Approach, Crossing, Hit, Own, Range, Ray, root_in};
 use super::real::Real;
 use super::refract::Snell;
 use super::scene::{PointLight, Shape, World};
-use super::shade::{LightTerms, Surface};
+use super::shade::{LightTerms, Surface, min};
 use super::witness::Witness;
+use crate::roundings::TIE;
 
 /// Traces in double-double, with its bound, and takes for a tie what that leaves open.
 #[derive(Debug)]
@@ -31,6 +32,17 @@ impl Ties {
         Self { bound, hits: Vec::new(), is_blocked: false }
     }
 
+    /// Whether a line touches a sphere, for all that is known.
+    fn is_edge(&self, shape: &Shape<Dd>, at: &Approach<Dd>) -> bool {
+        let is_near = at.discriminant.abs() < Dd::from(TIE) * shape.radius * shape.radius;
+        is_near && self.bound.is_edge(shape, at, self.bound.reach(shape, at))
+    }
+
+    /// How near to its surface a place has to lie to be on it, for all that is known.
+    fn near(&self, shape: &Shape<Dd>) -> Dd {
+        min(self.bound.near(shape), Dd::from(TIE))
+    }
+
     /// The least root that counts.
     fn root(
         &self,
@@ -39,11 +51,11 @@ impl Ties {
         range: &Range<Dd>,
         sign: Option<Ordering>,
     ) -> Option<(Dd, bool)> {
-        let is_edge = sign.is_none() && self.bound.is_edge(shape, at, self.bound.reach(shape, at));
+        let is_edge = sign.is_none() && self.is_edge(shape, at);
         let at = at.decided(if is_edge { Some(Ordering::Equal) } else { sign });
         let t_min = range.t_min;
         let start = at.origin.dot(at.origin) - shape.radius * shape.radius - t_min * (at.b + at.b - t_min * at.a);
-        if start.abs() > self.bound.near(shape) {
+        if start.abs() > self.near(shape) {
             return root_in(range, &at, shape.radius);
         }
         // The ray begins on the surface: the other root is left.
@@ -55,13 +67,13 @@ impl Ties {
     /// Whether a sphere stands between a point and a light.
     fn stands(&self, shape: &Shape<Dd>, crossing: &Crossing<Dd>, t_min: Dd) -> bool {
         let Crossing { at, start_squared, end_squared } = crossing;
-        let is_edge = self.bound.is_edge(shape, at, self.bound.reach(shape, at));
+        let is_edge = self.is_edge(shape, at);
         if !is_edge && at.discriminant < Dd::ZERO {
             return false;
         }
         let side = |squared: &Dd| {
             let beyond = *squared - shape.radius * shape.radius;
-            if beyond.abs() <= self.bound.near(shape) { Some(Ordering::Equal) } else { beyond.partial_cmp(&Dd::ZERO) }
+            if beyond.abs() <= self.near(shape) { Some(Ordering::Equal) } else { beyond.partial_cmp(&Dd::ZERO) }
         };
         let passes = at.b > at.a * t_min && at.b < at.a;
         match (side(start_squared), side(end_squared)) {
@@ -96,7 +108,7 @@ impl Witness<Dd> for Ties {
 
     fn tested_own(&mut self, ray: &Ray<Dd>, own: &Own<Dd>, shape: &Shape<Dd>, t: Dd, range: &Range<Dd>) {
         self.bound.tested_own(ray, own, shape, t, range);
-        let error = self.bound.exit_error(ray, shape);
+        let error = min(self.bound.exit_error(ray, shape), Dd::from(TIE) * t.abs());
         let is_after = |a: Dd, b: Dd| a - b > error;
         if own.inside && is_after(t, range.t_min) && (range.t_max > Dd::ONE || is_after(range.t_max, t)) {
             self.hits.push(Hit { t, sphere: shape.index as usize, inside: true });
@@ -119,7 +131,7 @@ impl Witness<Dd> for Ties {
     ) -> Option<Hit<Dd>> {
         self.bound.nearest(world, ray, own, range, hit);
         let least = self.hits.iter().map(|hit| hit.t).reduce(|a, b| if b < a { b } else { a })?;
-        let tied = least + self.bound.tie(least);
+        let tied = least + min(self.bound.tie(least), Dd::from(TIE) * least.abs());
         self.hits.iter().filter(|hit| hit.t <= tied).min_by_key(|hit| hit.sphere).copied()
     }
 
