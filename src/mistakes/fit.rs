@@ -94,9 +94,9 @@ fn with_decimals(vector: DVec3) -> Vec<DVec3> {
     all
 }
 
-/// Numbers as reports have them.
+/// Numbers as reports have them, without −0.
 fn in_words(vector: DVec3) -> String {
-    let [x, y, z] = vector.to_array().map(|x| format!("{}", rounded(x, 4)));
+    let [x, y, z] = vector.to_array().map(|x| format!("{}", rounded(x, 4) + 0.0));
     format!("({x}, {y}, {z})")
 }
 

@@ -18,7 +18,7 @@ const PAIR: usize = 40;
 const FIT: [usize; 2] = [80, 24];
 /// which is to take no longer than this, in seconds.
 const FIT_SECONDS: f64 = 2e-4;
-/// Likewise the best of them.
+/// Pixels of each kind on which the best of them are tried, at the most.
 const SECOND: usize = 4000;
 /// Causes that a pair may begin with: as many by the pixels that they leave and as many by the sum of all differences.
 const BEGINNERS: usize = 14;
