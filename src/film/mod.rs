@@ -14,7 +14,7 @@ use std::fmt;
 use std::path::Path;
 use std::str::FromStr;
 
-pub use problem::{FilePosition, Problem, ReadError, SamplePosition, Warning};
+pub use problem::{FilePosition, Problem, ProblemKind, ReadError, SamplePosition, Warning};
 pub use read::{Encoded, Leniency, Reading, decode, read_picture};
 pub use write::{OutputError, PictureWriter, Target, encode_png, save_text};
 
