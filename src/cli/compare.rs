@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::failure::{DIFFERENT, Failure, OK, USAGE};
-use super::files::{self, command, json, report_json};
+use super::files::{command, json, report_json, save as save_text};
 use super::guard::Guard;
 use super::input::Input;
 use super::named::format_by_ending;
@@ -181,10 +181,7 @@ fn trouble(args: &Args, failure: Failure, diagnosis: Option<&Diagnosis>) -> u8 {
 
 fn compare(args: &Args) -> Result<u8, Failure> {
     if args.causes {
-        let width = CAUSES.iter().map(|known| known.name.len()).max().unwrap_or(0);
-        for Known { name, line, .. } in CAUSES {
-            outln!("{name:<width$}  {line}");
-        }
+        list_causes();
         return Ok(OK);
     }
     let written = [("--heatmap", &args.heatmap), ("--three-wide", &args.three_wide)];
@@ -242,7 +239,7 @@ fn compare(args: &Args) -> Result<u8, Failure> {
             spheres: spheres.as_ref().map(|(counts, names)| (counts, names)),
             remarks: &[&remarks.warnings[..], &remarks.notes[..]].concat(),
         };
-        files::save(path, &comparison.html(&command())?)?;
+        save_text(path, &comparison.html(&command())?)?;
     }
     let draws = args.heatmap.is_some() || args.three_wide.is_some();
     let heat_map = if draws { Some(heat_bands(&picture_a, &picture_b)?) } else { None };
@@ -284,6 +281,14 @@ fn compare(args: &Args) -> Result<u8, Failure> {
         outln!("verdict           {verdict}");
     }
     Ok(if verdict == Verdict::Different { DIFFERENT } else { OK })
+}
+
+/// Prints what `--explain` knows.
+fn list_causes() {
+    let width = CAUSES.iter().map(|known| known.name.len()).max().unwrap_or(0);
+    for Known { name, line, .. } in CAUSES {
+        outln!("{name:<width$}  {line}");
+    }
 }
 
 /// A picture against its scene.

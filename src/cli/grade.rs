@@ -1,6 +1,7 @@
 //! `trueray grade`.
 
 use std::ffi::OsStr;
+use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -184,13 +185,13 @@ fn report(rows: &[Row], students: &[Student], extras: &[Extra], full: usize) -> 
     if students.len() > 1 && rows.len() > students.len() {
         text += "\nmean\n";
         for Student { student, score } in students {
-            text += &format!("{score:>6.1}  {}\n", visible(student));
+            let _ = writeln!(text, "{score:>6.1}  {}", visible(student));
         }
     }
     if !extras.is_empty() {
         text += "\nnot graded\n";
         for Extra { picture, reason } in extras {
-            text += &format!("  {}: {}\n", visible(picture), visible(reason));
+            let _ = writeln!(text, "  {}: {}", visible(picture), visible(reason));
         }
     }
     text + &format!("\nfull score  {full} of {}\n", rows.len())

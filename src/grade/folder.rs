@@ -89,10 +89,10 @@ impl Folder {
             for folder in folders {
                 let student = visible_path(Path::new(folder.file_name().unwrap_or_default()));
                 let files = all_pictures(&folder, &mut found.extras);
-                found.add(Some(student), files, scenes);
+                found.add(Some(student), &files, scenes);
             }
         } else {
-            found.add(None, pictures, scenes);
+            found.add(None, &pictures, scenes);
             found.extras.extend(
                 folders
                     .iter()
@@ -102,7 +102,7 @@ impl Folder {
         Ok(found)
     }
 
-    fn add(&mut self, student: Option<String>, files: Vec<PathBuf>, scenes: &[Sought]) {
+    fn add(&mut self, student: Option<String>, files: &[PathBuf], scenes: &[Sought]) {
         let mut is_used = vec![false; files.len()];
         let mut pictures = Vec::new();
         for scene in scenes {
