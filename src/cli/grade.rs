@@ -14,13 +14,18 @@ use super::files::{command, save, save_report, seconds};
 use super::guard::Guard;
 use super::input::Loaded;
 use super::options::{DeviceOptions, PictureOptions};
-use super::output::{errln, out};
+use super::output::out;
 use super::progress::{Progress, Style};
+use crate::cpu::Judge;
+use crate::effects::Effects;
 use crate::film::Leniency;
+use crate::gpu::Gpu;
 use crate::grade::{
     Assignment, Extra, FULL, Folder, Graded, Manner, Pages, Row, Sought, Student, Verdict, csv, overview, students,
     table,
 };
+use crate::scene::Scene;
+use crate::settings::Settings;
 use crate::words::{visible, visible_path};
 
 /// Arguments of `trueray grade`.
@@ -70,6 +75,32 @@ struct Report<'a> {
     not_graded: &'a [Extra],
 }
 
+/// A scene whose pictures are to be graded.
+struct Task {
+    /// The file's name without its ending.
+    stem: String,
+    scene: Scene,
+    effects: Effects,
+    judge: Judge,
+}
+
+impl Task {
+    fn read(args: &Args, file: &Path, settings: &Settings, gpu: Option<&Gpu>) -> Result<Self, Failure> {
+        let Loaded { name, mut scene, .. } = Loaded::read(file, true)?;
+        args.picture.resize(&mut scene);
+        let viewed = scene.viewed(settings);
+        let effects = args.picture.renderable_effects(&viewed).map_err(|failure| failure.of(&name))?;
+        let judge = judge_of_unknown(&args.device, gpu, &viewed, &effects);
+        drop(viewed);
+        let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        Ok(Self { stem, scene, effects, judge })
+    }
+
+    fn sought(&self) -> Sought {
+        Sought { stem: self.stem.clone(), output: self.scene.output.clone() }
+    }
+}
+
 pub(super) fn run(args: &Args) -> Result<u8, Failure> {
     let files = scene_files(&args.scenes)?;
     if args.html.as_deref() == Some(Path::new("-")) {
@@ -77,19 +108,9 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
     }
     let settings = args.picture.settings()?;
     let gpu = device_of_unknown(&args.device)?;
-    let mut assignments = Vec::new();
-    let mut sought = Vec::new();
-    for file in &files {
-        let mut loaded = Loaded::read(file, true)?;
-        args.picture.resize(&mut loaded.scene);
-        let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        sought.push(Sought { stem: stem.clone(), output: loaded.scene.output.clone() });
-        let viewed = loaded.scene.viewed(&settings);
-        let effects = args.picture.renderable_effects(&viewed).map_err(|failure| failure.of(&loaded.name))?;
-        let judge = judge_of_unknown(&args.device, gpu.as_ref(), &viewed, &effects);
-        drop(viewed);
-        assignments.push((stem, loaded.scene, effects, judge));
-    }
+    let tasks =
+        files.iter().map(|file| Task::read(args, file, &settings, gpu.as_ref())).collect::<Result<Vec<_>, _>>()?;
+    let sought: Vec<_> = tasks.iter().map(Task::sought).collect();
     let unreadable = |error: std::io::Error| Failure::new(USAGE, format!("{}: {error}", visible_path(&args.theirs)));
     let Folder { submissions, extras } = Folder::read(&args.theirs, &sought).map_err(unreadable)?;
     let pictures = submissions.iter().flat_map(|submission| submission.pictures.iter().flatten());
@@ -111,11 +132,11 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
     }
     let command = command();
     let mut progress = Progress::new(args.progress, "grade");
-    let (scenes, number) = (assignments.len(), submissions.len());
+    let (scenes, number) = (tasks.len(), submissions.len());
     let mut rows: Vec<(usize, Row)> = Vec::new();
     let mut explaining = Duration::ZERO;
     // A reference is there once, for all students.
-    for (of_scene, (stem, scene, effects, judge)) in assignments.into_iter().enumerate() {
+    for (of_scene, Task { stem, scene, effects, judge }) in tasks.into_iter().enumerate() {
         let assignment = Assignment::new(stem, scene, settings, effects, judge)?;
         for (of_student, submission) in submissions.iter().enumerate() {
             progress.set(rows.len() as f64 / (scenes * number) as f64);
@@ -156,9 +177,6 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
     if let Some(path) = &args.json {
         let report = Report { command, full, rows: &rows, students: &students, not_graded: &extras };
         save_report(path, &report)?;
-    }
-    if submissions.is_empty() {
-        errln!("trueray: {} holds no pictures", visible_path(&args.theirs));
     }
     Ok(if full == rows.len() { OK } else { DIFFERENT })
 }

@@ -22,7 +22,7 @@ pub struct Metrics {
     pub rmse: f64,
     /// Peak signal-to-noise ratio, 20 log₁₀(255 / RMSE), in dB; infinite (`null` in JSON) for pictures that are the same.
     pub psnr: f64,
-    /// Structural similarity, −1 to 1; `None` for pictures that are narrower or lower than [`SSIM_WINDOW`]. See [`ssim`].
+    /// Mean structural similarity, −1 to 1; `None` for pictures that are narrower or lower than [`SSIM_WINDOW`].
     pub ssim: Option<f64>,
     /// The level difference that half of the pixels do not exceed.
     pub level_p50: u8,

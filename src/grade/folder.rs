@@ -125,12 +125,15 @@ impl Folder {
     }
 }
 
-/// Pictures and folders in a folder, by name; links to folders are not followed.
+/// Pictures and folders in a folder, by name, but for hidden ones; links to folders are not followed.
 fn entries(folder: &Path) -> io::Result<(Vec<PathBuf>, Vec<PathBuf>)> {
     let (mut pictures, mut folders) = (Vec::new(), Vec::new());
     for entry in fs::read_dir(folder)? {
         let entry = entry?;
         let path = entry.path();
+        if entry.file_name().as_encoded_bytes().starts_with(b".") {
+            continue;
+        }
         if entry.file_type()?.is_dir() {
             folders.push(path);
         } else if ending(&path).is_some() && fs::metadata(&path).is_ok_and(|found| found.is_file()) {

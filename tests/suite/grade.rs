@@ -68,10 +68,10 @@ fn files_of(folders: &[(&str, &[&str])], scenes: &[(&str, Option<&str>)]) -> (Ve
 #[test]
 fn a_picture_bears_the_name_of_its_scene_or_output() {
     let scenes = [("a", Some("out-a.ppm")), ("b", None), ("c", Some("out-c.ppm"))];
-    let files = ["out-a.ppm", "a.png", "b.PPM", "out-c.png", "notes.txt", "other.bmp"];
+    let files = ["out-a.ppm", "a.ppm", "b.PPM", "out-c.png", "notes.txt", "other.bmp", "._b.png"];
     let (found, extras) = files_of(&[("", &files)], &scenes);
     assert_eq!(found, ["all: out-a.ppm b.PPM out-c.png"]);
-    assert_eq!(extras, ["a.png: another picture of a is graded", "other.bmp: no scene has this name"]);
+    assert_eq!(extras, ["a.ppm: another picture of a is graded", "other.bmp: no scene has this name"]);
     // A format that is read comes before one that is not.
     assert_eq!(files_of(&[("", &["b.bmp", "b.png"])], &scenes[1..2]).0, ["all: b.png"]);
 }
@@ -80,7 +80,13 @@ fn a_picture_bears_the_name_of_its_scene_or_output() {
 fn folders_are_students_where_no_picture_lies_beside_them() {
     let scenes = [("a", None), ("b", None)];
     let (found, extras) = files_of(
-        &[("", &["list.csv"]), ("ann", &["a.ppm"]), ("bob/out/deep", &["b.ppm"]), ("bob", &["b.png"])],
+        &[
+            ("", &["list.csv"]),
+            ("ann", &["a.ppm"]),
+            ("bob/out/deep", &["b.ppm"]),
+            ("bob", &["b.png"]),
+            (".git", &["a.ppm"]),
+        ],
         &scenes,
     );
     // How deep a picture lies matters less than its ending.

@@ -107,10 +107,10 @@ fn differing_pixels_are_counted_by_sphere() {
     let (case, theirs) = wrong(|[red, green, blue]| [red / 2, green, if blue > 0 { 254 } else { 0 }]);
     let viewed = case.scene.viewed(&case.settings);
     let of = |color: [u8; 3]| case.expected.pixels().iter().filter(|&&pixel| pixel == color).count() as u64;
-    let unexplained: Vec<_> = (0..40).map(|x| [x, 0]).collect();
+    let unexplained: Vec<_> = (0..40).map(|x| [x, 0]).chain((0..5).map(|x| [x, 1])).chain([[10, 20]]).collect();
     let found = BySphere::of(&theirs, &case.expected, &viewed, &unexplained).unwrap();
-    let background = OnSphere { sphere: None, differing: of([0, 0, 255]), unexplained: 40 };
-    let left = OnSphere { sphere: Some(0), differing: of([255, 0, 0]), unexplained: 0 };
+    let background = OnSphere { sphere: None, differing: of([0, 0, 255]), unexplained: 45 };
+    let left = OnSphere { sphere: Some(0), differing: of([255, 0, 0]), unexplained: 1 };
     assert_eq!((found.counts, found.step), (vec![background, left], 1));
 }
 
