@@ -81,6 +81,8 @@ pub mod film;
 pub mod geometry;
 #[doc(hidden)]
 pub mod gpu;
+#[doc(hidden)]
+pub mod grade;
 mod hash;
 #[doc(hidden)]
 pub mod limits;

@@ -1,12 +1,14 @@
 //! What stands below the options of each command: two examples, and what else there is to know.
 
+use crate::grade::RULE;
+
 pub(super) const PROGRAM: &str = "\
 Examples:
   trueray scene.txt
   trueray render scene.txt -o scene.png
 
 Exit codes: 0 ok, 2 usage, 3 scene, 4 no device, 5 device lost, 6 output, 7 no thread; \
-128 + n where signal n ended the run. compare: 0 same, 1 different, 2 trouble; verify: 0 right, 1 wrong, 2 trouble. stress: 1 a promise is broken; conform: 1 a driver is wrong.
+128 + n where signal n ended the run. compare: 0 same, 1 different, 2 trouble; grade: 1 some picture is not right; verify: 0 right, 1 wrong, 2 trouble. stress: 1 a promise is broken; conform: 1 a driver is wrong.
 
 Environment: WGPU_ADAPTER_NAME, WGPU_POWER_PREF, WGPU_BACKEND, VK_DRIVER_FILES are honoured; \
 TRUERAY_NO_TUNING=1 ignores what `bench --tune` has kept, TRUERAY_KERNEL_CACHE=0 the kernels that \
@@ -108,3 +110,16 @@ pub(super) const SHADER: &str = "\
 Examples:
   trueray shader scene.txt
   trueray shader --precision robust --spirv scene.txt > kernel.spvasm";
+
+pub(super) fn grade() -> String {
+    format!(
+        "\
+Examples:
+  trueray grade --scenes scenes --theirs pictures --html grades.html --csv grades.csv
+  trueray grade --scenes scenes --theirs students --no-explain --json grades.json
+
+Score: {RULE}
+
+Exit codes: 0 every picture has the full score, 1 some have not, 2 usage, 3 scene, 4 no device, 6 output."
+    )
+}

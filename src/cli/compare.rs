@@ -7,22 +7,24 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::failure::{DIFFERENT, Failure, OK, USAGE};
-use super::files::{json, report_json};
+use super::files::{command, json, report_json, save as save_text};
 use super::guard::Guard;
 use super::input::Input;
 use super::named::format_by_ending;
 use super::options::{DeviceOptions, PictureOptions, SeveralDevices, open_device};
 use super::output::{errln, out, outln};
 use crate::compare::{
-    Band, Difference, Explanation, Limits, SCALE, SizeMismatch, Verdict, heatmap, three_wide, verdict,
+    Band, BySphere, Comparison, Difference, Explanation, Limits, SCALE, SizeMismatch, Verdict, heatmap, three_wide,
+    verdict,
 };
 use crate::cpu::{Judge, Reference};
 use crate::effects::Effects;
 use crate::engine::{Backend, Engine, device_name, render_picture};
 use crate::film::{Encoded, Leniency, Picture, ReadError, Target};
-use crate::gpu::Choice;
+use crate::gpu::{Choice, Gpu};
 use crate::mistakes::{CAUSES, Diagnosis, Known, diagnose, diagnose_size};
 use crate::precision::Request;
+use crate::scene::Names;
 use crate::viewed::ViewedScene;
 use crate::words::{count, visible};
 
@@ -56,6 +58,9 @@ pub(super) struct Args {
     /// Write both pictures and the heat map side by side
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     three_wide: Option<PathBuf>,
+    /// Write a page with both pictures, where they differ and why, one HTML file that needs nothing else
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    report: Option<PathBuf>,
     /// Print JSON
     #[arg(long, help_heading = "Output")]
     json: bool,
@@ -151,6 +156,8 @@ struct Pair {
     explanation: Option<Explanation>,
     diagnosis: Option<Diagnosis>,
     not_finite: Option<u64>,
+    /// What the differing pixels show, with the labels of spheres, where a page is wanted.
+    spheres: Option<(BySphere, Names)>,
 }
 
 pub(super) fn run(args: &Args) -> u8 {
@@ -174,14 +181,12 @@ fn trouble(args: &Args, failure: Failure, diagnosis: Option<&Diagnosis>) -> u8 {
 
 fn compare(args: &Args) -> Result<u8, Failure> {
     if args.causes {
-        let width = CAUSES.iter().map(|known| known.name.len()).max().unwrap_or(0);
-        for Known { name, line, .. } in CAUSES {
-            outln!("{name:<width$}  {line}");
-        }
+        list_causes();
         return Ok(OK);
     }
     let written = [("--heatmap", &args.heatmap), ("--three-wide", &args.three_wide)];
-    Guard::new(args.pictures.iter().chain(&args.scene)).options(written)?;
+    Guard::new(args.pictures.iter().chain(&args.scene))
+        .options(written.into_iter().chain([("--report", &args.report)]))?;
     written.iter().filter_map(|(_, path)| path.as_deref()).try_for_each(|path| format_by_ending(path).map(|_| ()))?;
     if let Some(devices) = args.device.pair()? {
         if args.explain {
@@ -192,7 +197,7 @@ fn compare(args: &Args) -> Result<u8, Failure> {
         }
         return two_devices::compare(args, &devices);
     }
-    let Pair { names: [a, b], pictures: [picture_a, picture_b], remarks, explanation, diagnosis, not_finite } =
+    let Pair { names: [a, b], pictures: [picture_a, picture_b], remarks, explanation, diagnosis, not_finite, spheres } =
         match (&args.scene, args.pictures.as_slice()) {
             (None, [a, b]) => two_pictures(args, a, b)?,
             (Some(scene), pictures @ ([] | [_])) => {
@@ -221,6 +226,20 @@ fn compare(args: &Args) -> Result<u8, Failure> {
         if let Some(path) = path {
             save(path, &picture(&picture_a, &picture_b)?)?;
         }
+    }
+    if let Some(path) = &args.report {
+        let comparison = Comparison {
+            title: "Two pictures",
+            names: [&a, &b],
+            pictures: [&picture_a, &picture_b],
+            difference: &difference,
+            verdict: &verdict.to_string(),
+            explanation: explanation.as_ref(),
+            diagnosis: diagnosis.as_ref(),
+            spheres: spheres.as_ref().map(|(counts, names)| (counts, names)),
+            remarks: &[&remarks.warnings[..], &remarks.notes[..]].concat(),
+        };
+        save_text(path, &comparison.html(&command())?)?;
     }
     let draws = args.heatmap.is_some() || args.three_wide.is_some();
     let heat_map = if draws { Some(heat_bands(&picture_a, &picture_b)?) } else { None };
@@ -262,6 +281,14 @@ fn compare(args: &Args) -> Result<u8, Failure> {
         outln!("verdict           {verdict}");
     }
     Ok(if verdict == Verdict::Different { DIFFERENT } else { OK })
+}
+
+/// Prints what `--explain` knows.
+fn list_causes() {
+    let width = CAUSES.iter().map(|known| known.name.len()).max().unwrap_or(0);
+    for Known { name, line, .. } in CAUSES {
+        outln!("{name:<width$}  {line}");
+    }
 }
 
 /// A picture against its scene.
@@ -306,7 +333,7 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Compa
     };
     let (name, picture, not_finite, judge) = if let Some((name, encoded)) = encoded {
         let picture = decode(args, &name, encoded, "the picture", &mut remarks)?;
-        let judge = judge_of_unknown(&device, &viewed, &effects)?;
+        let judge = judge_of_unknown(&device, device_of_unknown(&device)?.as_ref(), &viewed, &effects);
         drop(viewed);
         (name, picture, None, judge)
     } else {
@@ -327,6 +354,8 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Compa
     let expected = rendered(rgb);
     let reference = Reference::new(&scene.viewed(&settings), &effects);
     let explanation = Explanation::of(&picture, &expected, &reference, &judge);
+    let by_sphere = || BySphere::of(&picture, &expected, &scene.viewed(&settings), &explanation.places);
+    let spheres = if args.report.is_some() { Some((by_sphere()?, scene.sphere_names.clone())) } else { None };
     let names = [name, format!("reference of {}", loaded.name)];
     let diagnosis =
         args.explain.then(|| diagnose(&picture, &expected, &scene.viewed(&settings), &effects, &explanation.places));
@@ -338,32 +367,43 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Compa
         explanation: Some(explanation),
         diagnosis,
         not_finite,
+        spheres,
     })))
 }
 
-/// The judge of a picture of unknown origin: as if it came from the device that is asked for or, for auto, from the one that would render
-/// here, at the tier that is asked for or that covers the scene there.
-fn judge_of_unknown(device: &DeviceOptions, viewed: &ViewedScene, effects: &Effects) -> Result<Judge, Failure> {
-    let gpu = match &device.device {
-        Choice::Cpu => {
-            return Ok(match device.precision {
-                Request::Tier(tier) => Judge::of(tier),
-                Request::Auto | Request::Certified => Backend::Reference.judge(),
-            });
-        }
+/// The device as whose pictures those of unknown origin are judged: the one that is asked for or, for auto, the one that would render
+/// here, if there is one.
+pub(super) fn device_of_unknown(device: &DeviceOptions) -> Result<Option<Gpu>, Failure> {
+    match &device.device {
+        Choice::Cpu => Ok(None),
         // The picture is there without a device, too.
-        Choice::Auto => open_device(&Choice::Auto)
+        Choice::Auto => Ok(open_device(&Choice::Auto)
             .inspect_err(|error| {
                 errln!("trueray: judged as a picture of hardware, since no device can be used here: {error}");
             })
-            .ok(),
-        choice => Some(open_device(choice)?),
-    };
-    let selection = device.selection(gpu.as_ref(), viewed, effects);
-    Ok(match &gpu {
+            .ok()),
+        choice => Ok(Some(open_device(choice)?)),
+    }
+}
+
+/// The judge of a picture of unknown origin: as if it came from that device, at the tier that is asked for or that covers the scene there.
+pub(super) fn judge_of_unknown(
+    device: &DeviceOptions,
+    gpu: Option<&Gpu>,
+    viewed: &ViewedScene,
+    effects: &Effects,
+) -> Judge {
+    if device.device == Choice::Cpu {
+        return match device.precision {
+            Request::Tier(tier) => Judge::of(tier),
+            Request::Auto | Request::Certified => Backend::Reference.judge(),
+        };
+    }
+    let selection = device.selection(gpu, viewed, effects);
+    match gpu {
         None if !selection.certified => Judge::of(selection.tier),
-        gpu => Backend::of(gpu.as_ref(), &selection).judge(),
-    })
+        gpu => Backend::of(gpu, &selection).judge(),
+    }
 }
 
 /// What is worth telling of the picture files.
@@ -405,6 +445,7 @@ fn two_pictures(args: &Args, a: &Path, b: &Path) -> Result<Pair, Failure> {
         explanation: None,
         diagnosis: None,
         not_finite: None,
+        spheres: None,
     })
 }
 

@@ -14,6 +14,7 @@ mod environment;
 mod export;
 mod failure;
 mod files;
+mod grade;
 mod guard;
 mod input;
 mod manual;
@@ -78,6 +79,9 @@ enum Command {
     /// Say where and how two pictures differ, or a picture and its scene's reference
     #[command(after_help = after_help::COMPARE)]
     Compare(compare::Args),
+    /// Score a folder of pictures, those of a class, beside the references of their scenes
+    #[command(after_help = after_help::grade())]
+    Grade(grade::Args),
     /// Say whether a picture is its scene's in every pixel
     #[command(after_help = after_help::VERIFY)]
     Verify(verify::Args),
@@ -149,6 +153,7 @@ pub fn run() -> ExitCode {
         None => meant_command(cli.render.first_scene()).map_or_else(|| render::run(&cli.render), Err),
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Compare(args)) => Ok(compare::run(&args)),
+        Some(Command::Grade(args)) => grade::run(&args),
         Some(Command::Verify(args)) => Ok(verify::run(&args)),
         Some(Command::Pixel(args)) => pixel::run(&args).map(ok),
         Some(Command::Check(args)) => check::run(&args),

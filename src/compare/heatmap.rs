@@ -58,7 +58,7 @@ const GAP: [[u8; 3]; 4] = [[255; 3], [0; 3], [0; 3], [255; 3]];
 /// Pictures of different sizes.
 pub fn heatmap(a: &Picture, b: &Picture) -> Result<Picture, SizeMismatch> {
     SizeMismatch::check(a, b)?;
-    let pixels: Vec<[u8; 3]> = a.pixels().iter().zip(b.pixels()).map(|(&a, &b)| heat(a, b)).collect();
+    let pixels: Vec<[u8; 3]> = a.pixels().iter().zip(b.pixels()).map(|(&a, &b)| pixel_heat(a, b)).collect();
     Ok(Picture::assemble(a.width(), a.height(), pixels.into_flattened()))
 }
 
@@ -78,7 +78,8 @@ pub fn three_wide(a: &Picture, b: &Picture) -> Result<Picture, SizeMismatch> {
     Ok(Picture::assemble(width, a.height(), rgb))
 }
 
-fn heat(a: [u8; 3], b: [u8; 3]) -> [u8; 3] {
+/// A pixel of [`heatmap`].
+pub(super) fn pixel_heat(a: [u8; 3], b: [u8; 3]) -> [u8; 3] {
     match band(level(a, b)) {
         Some(band) => SCALE[band].color,
         None => [dark_grey(a); 3],

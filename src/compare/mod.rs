@@ -4,6 +4,9 @@
 
 mod explain;
 mod heatmap;
+mod metrics;
+mod page;
+mod places;
 mod resemblance;
 
 use std::fmt;
@@ -15,6 +18,9 @@ use crate::words::count;
 
 pub use explain::{Explanation, UnexplainedPixel};
 pub use heatmap::{Band, SCALE, heatmap, three_wide};
+pub use metrics::{Metrics, SSIM_WINDOW};
+pub use page::Comparison;
+pub use places::{BySphere, OnSphere, worst_places};
 pub use resemblance::{Resemblance, ResemblanceKind};
 
 /// Two pictures that cannot be compared because their sizes differ.

@@ -26,6 +26,10 @@ use crate::roundings::{
 };
 use crate::settings::Specular;
 
+/// An ellipsoid whose semi-axes differ by no more than this factor is nearly a sphere: a simple bound of its normal, which grows by the
+/// square of the factor from bounce to bounce, does.
+const ROUND: f64 = 4.0;
+
 /// What is known of a ray: the cone around it.
 #[derive(Debug, Clone, Copy)]
 struct Cone<T> {
@@ -226,13 +230,16 @@ impl<T: Real, const PROOF: bool> Bound<T, PROOF> {
         two::<T>() * (place + T::from_f64(3.0) * shape.radius * (stretch * self.slope / length)) / length
     }
 
-    /// What is known of the surface of a true sphere, in a proof: as for any, where lengths are known beforehand or have simple bounds.
+    /// What is known of the surface of a sphere, or of an ellipsoid that is nearly one, in a proof: in object space, where lengths are
+    /// known beforehand or have simple bounds.
     #[inline]
-    fn sphere(&mut self, world: &World<T>, hit: &Hit<T>, at: &Approach<T>) {
+    fn round_surface(&mut self, world: &World<T>, hit: &Hit<T>, at: &Approach<T>) {
         let shape = &world.shapes[hit.sphere];
-        let (stretch, greatest, radius) = (shape.inv_scale.x, world.materials[hit.sphere].scale.x, shape.radius);
+        let (stretch, greatest) = (largest(shape.inv_scale), largest(world.materials[hit.sphere].scale));
+        let radius = shape.radius;
         let way = size(at.origin) + radius;
-        let stretched = stretch * (self.base + hit.t.abs() * self.slope) + self.place * way + self.local * radius;
+        let world_width = self.base + hit.t.abs() * self.slope + self.center * size(shape.center);
+        let stretched = stretch * world_width + self.place * way + self.local * radius;
         let reach = two::<T>() * stretched * (radius + stretched);
         let rest = at.discriminant - reach;
         let aside = if rest > T::ZERO {
@@ -241,8 +248,9 @@ impl<T: Real, const PROOF: bool> Bound<T, PROOF> {
             T::from_f64(ROOT_AT_EDGE) * reach.sqrt() + stretched
         };
         let along = aside + self.roundings(ALONG) * (way + radius);
-        // The radius is at least 1.
-        self.normal = along + self.roundings(ANGLE);
+        // The radius is at least 1, and so the gradient no shorter than the least stretch.
+        let turned = if world.ellipsoids { along * stretch / least(shape.inv_scale) } else { along };
+        self.normal = turned + self.roundings(ANGLE);
         let place = size(shape.center) + greatest * radius;
         self.cone.position = greatest * along + self.roundings(ANGLE) * place + self.moved;
     }
@@ -431,11 +439,11 @@ impl<T: Real, const PROOF: bool> Witness<T> for Bound<T, PROOF> {
     }
 
     fn surface(&mut self, world: &World<T>, ray: &Ray<T>, hit: &Hit<T>, at: &Approach<T>, surface: &Surface<T>) {
-        if PROOF && !world.ellipsoids {
-            self.sphere(world, hit, at);
+        let shape = &world.shapes[hit.sphere];
+        if PROOF && (!world.ellipsoids || largest(shape.inv_scale) < T::from_f64(ROUND) * least(shape.inv_scale)) {
+            self.round_surface(world, hit, at);
             return;
         }
-        let shape = &world.shapes[hit.sphere];
         let material = &world.materials[hit.sphere];
         let local = surface.own.local;
         let t = hit.t.abs();
@@ -588,6 +596,11 @@ impl<T: Real, const PROOF: bool> Witness<T> for Bound<T, PROOF> {
             (self.cone, self.throughput) = (cone, throughput);
         }
     }
+}
+
+/// The least component.
+fn least<T: Real>(v: Vec3<T>) -> T {
+    min(v.x, min(v.y, v.z))
 }
 
 /// Whether a number that is known to differ from 0 by no more than its error is taken for 0: by who has the last word, where it is near

@@ -142,6 +142,7 @@ pub(crate) fn accepted_root<T: Real, W: Witness<T>>(
 }
 
 /// The least of both roots that counts, and whether it is the greater one.
+#[inline]
 pub(super) fn root_in<T: Real>(range: &Range<T>, at: &Approach<T>, radius: T) -> Option<(T, bool)> {
     least_of(roots(at, radius)?, range)
 }

@@ -5,7 +5,7 @@ use std::io::Cursor;
 
 use png::{BitDepth, ColorType, Decoder, Reader, Transformations};
 
-use super::problem::{Problem, Warning};
+use super::problem::{Problem, ProblemKind, Warning};
 use super::read::{Leniency, Reading};
 use super::{Picture, sample_count};
 use crate::panics;
@@ -33,7 +33,7 @@ pub(super) fn size(bytes: &[u8]) -> Result<(u32, u32), Problem> {
     let number = |at: usize| bytes.get(at..at + 4).and_then(|field| field.try_into().ok()).map(u32::from_be_bytes);
     // The first chunk is IHDR; where it is not, the decoder finds out before it allocates anything.
     let (Some(width), Some(height), Some(&[depth, color])) = (number(16), number(20), bytes.get(24..26)) else {
-        return Err(damaged("the file ends within its header"));
+        return Err(damaged("the file ends within its header").of_kind(ProblemKind::CutOff));
     };
     let channels: u64 = match color {
         2 => 3,
@@ -71,11 +71,15 @@ pub(super) fn decode(bytes: &[u8], leniency: Leniency) -> Result<Reading, Proble
     };
     // A decoder's panic is a damaged file like any other.
     let decoded = panics::caught(|| pixels(whole, width, height, leniency));
-    let (rgb, mut warnings) =
-        decoded.map_err(|why| damaged(format!("the decoder cannot make sense of it ({why})")))??;
+    let decoded =
+        decoded.map_err(|why| damaged(format!("the decoder cannot make sense of it ({why})"))).and_then(|read| read);
+    let (rgb, mut warnings) = decoded.map_err(|problem| match problem.kind() {
+        ProblemKind::Damaged if !chunks.ends => problem.of_kind(ProblemKind::CutOff),
+        _ => problem,
+    })?;
     let end = if !chunks.ends {
         let why = "the PNG is cut off after its pixels: it does not end with its IEND chunk";
-        Some((Problem::mendable(why), Warning::PngCutOff))
+        Some((Problem::mendable(why).of_kind(ProblemKind::CutOff), Warning::PngCutOff))
     } else if chunks.length < bytes.len() {
         let bytes = (bytes.len() - chunks.length) as u64;
         let why = format!("data after the end of the PNG: {}", count(bytes, "byte"));
@@ -212,7 +216,8 @@ impl Rows {
         let mut warnings = Vec::new();
         if depth == 16 {
             if leniency == Leniency::Strict {
-                return Err(Problem::mendable("the PNG has 16 bits a channel; pictures here have 8"));
+                let message = "the PNG has 16 bits a channel; pictures here have 8";
+                return Err(Problem::mendable(message).of_kind(ProblemKind::Unsupported));
             }
             warnings.push(Warning::Scaled { maximum: 65535 });
         }
@@ -278,7 +283,8 @@ impl Rows {
     /// Takes note of a pixel that is not opaque, just added.
     fn see_through(&mut self, x: usize) -> Result<(), Problem> {
         if self.leniency == Leniency::Strict {
-            return Err(Problem::mendable(format!("the pixel at x {x}, y {} is not opaque", self.row_number())));
+            let message = format!("the pixel at x {x}, y {} is not opaque", self.row_number());
+            return Err(Problem::mendable(message).of_kind(ProblemKind::Unsupported));
         }
         match self.warnings.last_mut() {
             Some(Warning::AlphaDropped { pixels }) => *pixels += 1,

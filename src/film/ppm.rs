@@ -4,7 +4,7 @@
 //! that one; it may be anywhere before a P6 raster, also right after the maximum, and anywhere in P3. Lines may be longer
 //! than the 70 characters that writers should keep to.
 
-use super::problem::{FilePosition, Problem, SamplePosition, Warning};
+use super::problem::{FilePosition, Problem, ProblemKind, SamplePosition, Warning};
 use super::read::{Leniency, Reading};
 use super::{Picture, sample_count};
 use crate::words::count;
@@ -22,7 +22,7 @@ pub(super) fn decode(bytes: Vec<u8>, leniency: Leniency) -> Result<Reading, Prob
     let header = Header::read(&mut scanner)?;
     if header.maximum > 255 && leniency == Leniency::Strict {
         let message = format!("samples up to {} take 16 bits; pictures here have 8 bits a channel", header.maximum);
-        return Err(Problem::mendable(message));
+        return Err(Problem::mendable(message).of_kind(ProblemKind::Unsupported));
     }
     let mut tally = Tally { header: &header, leniency, warnings: Vec::new(), clamped: None };
     let rgb = if header.plain {
@@ -144,7 +144,8 @@ impl<'a> Scanner<'a> {
 
     fn header_number(&mut self, name: &str) -> Result<(u32, u64), Problem> {
         let Some(token) = self.token() else {
-            return Err(header_error(self.line, &format!("the file ends where the {name} should stand")));
+            let ends = header_error(self.line, &format!("the file ends where the {name} should stand"));
+            return Err(ends.of_kind(ProblemKind::CutOff));
         };
         match number(token) {
             Number::Value(value) => Ok((value, self.line)),
@@ -223,9 +224,8 @@ impl Tally<'_> {
         let first = self.header.position(rgb.len());
         if self.leniency == Leniency::Strict {
             let found = rgb.len();
-            return Err(Problem::mendable(format!(
-                "{place}: the file ends after {found} of {expected} samples; {first} is missing"
-            )));
+            let message = format!("{place}: the file ends after {found} of {expected} samples; {first} is missing");
+            return Err(Problem::mendable(message).of_kind(ProblemKind::CutOff));
         }
         if count > MAX_MADE_UP {
             return Err(Problem::too_large(self.header.width, self.header.height));

@@ -80,27 +80,50 @@ impl fmt::Display for SamplePosition {
     }
 }
 
+/// What kind of trouble a file is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ProblemKind {
+    /// It ends before its picture does.
+    CutOff,
+    /// Another format, or pixels that are not 8 bits a channel and opaque.
+    Unsupported,
+    /// It breaks the rules of its format, or cannot be read at all.
+    Damaged,
+}
+
 /// Why a file's contents are not a picture, in words that name the place.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Problem {
     message: String,
     lenient_helps: bool,
+    kind: ProblemKind,
 }
 
 impl Problem {
     /// One that nothing gets over.
     pub(super) fn fatal(message: impl Into<String>) -> Self {
-        Self { message: message.into(), lenient_helps: false }
+        Self { message: message.into(), lenient_helps: false, kind: ProblemKind::Damaged }
     }
 
     /// One that [`Leniency::Lenient`](super::Leniency::Lenient) gets over.
     pub(super) fn mendable(message: impl Into<String>) -> Self {
-        Self { message: message.into(), lenient_helps: true }
+        Self { message: message.into(), lenient_helps: true, kind: ProblemKind::Damaged }
+    }
+
+    /// The same, of another kind than [`ProblemKind::Damaged`].
+    pub(super) fn of_kind(self, kind: ProblemKind) -> Self {
+        Self { kind, ..self }
     }
 
     /// A header that promises more samples than the file can hold.
     pub(super) fn too_large(width: u32, height: u32) -> Self {
-        Self::fatal(format!("the header promises {width}x{height} pixels, more than the file can hold"))
+        let message = format!("the header promises {width}x{height} pixels, more than the file can hold");
+        Self::fatal(message).of_kind(ProblemKind::CutOff)
+    }
+
+    /// What kind of trouble it is.
+    pub fn kind(&self) -> ProblemKind {
+        self.kind
     }
 
     /// Whether [`Leniency::Lenient`](super::Leniency::Lenient) gets over it.

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::problem::{Problem, ReadError, Warning};
+use super::problem::{Problem, ProblemKind, ReadError, Warning};
 use super::{Picture, png, ppm};
 
 /// What to do with a file that breaks its format's rules.
@@ -114,21 +114,23 @@ enum Kind {
 
 fn recognise(bytes: &[u8]) -> Result<Kind, Problem> {
     let wanted = "wanted is PPM (P6 or P3) or PNG";
-    let looks_like = match bytes {
-        [] => "the file is empty",
+    let (looks_like, kind) = match bytes {
+        [] => ("the file is empty", ProblemKind::CutOff),
         [b'P', b'3' | b'6', ..] => return Ok(Kind::Ppm),
         _ if bytes.starts_with(png::MAGIC) => return Ok(Kind::Png),
-        [b'P', b'1' | b'4', ..] => "this is PBM, black and white",
-        [b'P', b'2' | b'5', ..] => "this is PGM, shades of grey",
-        [b'P', b'7', ..] => "this is PAM",
-        [b'P', b'F' | b'f', ..] => "this is PFM",
-        [b'p', b'3' | b'6', ..] => "PPM starts with a capital P",
-        [0xff, 0xd8, 0xff, ..] => "this is JPEG, which does not keep pixels exactly",
-        [b'G', b'I', b'F', ..] => "this is GIF",
-        [b'B', b'M', ..] => "this is BMP",
-        [0xef, 0xbb, 0xbf, ..] => "the file starts with a byte order mark",
-        [0x89, b'P', b'N', b'G', ..] => "this is PNG with a damaged start (transferred as text?)",
-        _ => "no known picture format",
+        [b'P', b'1' | b'4', ..] => ("this is PBM, black and white", ProblemKind::Unsupported),
+        [b'P', b'2' | b'5', ..] => ("this is PGM, shades of grey", ProblemKind::Unsupported),
+        [b'P', b'7', ..] => ("this is PAM", ProblemKind::Unsupported),
+        [b'P', b'F' | b'f', ..] => ("this is PFM", ProblemKind::Unsupported),
+        [b'p', b'3' | b'6', ..] => ("PPM starts with a capital P", ProblemKind::Damaged),
+        [0xff, 0xd8, 0xff, ..] => ("this is JPEG, which does not keep pixels exactly", ProblemKind::Unsupported),
+        [b'G', b'I', b'F', ..] => ("this is GIF", ProblemKind::Unsupported),
+        [b'B', b'M', ..] => ("this is BMP", ProblemKind::Unsupported),
+        [0xef, 0xbb, 0xbf, ..] => ("the file starts with a byte order mark", ProblemKind::Damaged),
+        [0x89, b'P', b'N', b'G', ..] => {
+            ("this is PNG with a damaged start (transferred as text?)", ProblemKind::Damaged)
+        }
+        _ => ("no known picture format", ProblemKind::Unsupported),
     };
-    Err(Problem::fatal(format!("{looks_like}; {wanted}")))
+    Err(Problem::fatal(format!("{looks_like}; {wanted}")).of_kind(kind))
 }

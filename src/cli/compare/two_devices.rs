@@ -41,6 +41,9 @@ pub(super) fn compare(args: &Args, devices: &[DeviceOptions; 2]) -> Result<u8, F
     let (Some(scene), []) = (&args.scene, &args.pictures[..]) else {
         return Err(Failure::new(USAGE, "two devices compare their pictures of --scene SCENE, and no other"));
     };
+    if args.report.is_some() {
+        return Err(Failure::new(USAGE, "--report is for one device's picture, or for two pictures"));
+    }
     let input = Input::read(scene)?;
     if args.json && input.parsed.scene.is_none() {
         return Err(Failure::new(USAGE, input.parsed.report(false).trim_end()));
