@@ -89,6 +89,9 @@ impl AovOptions {
         if scenes > 1 && self.aov_file.is_some() {
             return Err(Failure::new(USAGE, "--aov-file takes one scene"));
         }
+        if self.aov_file.as_deref().is_some_and(|file| file.as_os_str() == "-") {
+            return Err(Failure::new(USAGE, "--aov-file takes a file, not standard output"));
+        }
         guard.options([("--aov-file", &self.aov_file)])
     }
 

@@ -10,7 +10,7 @@ use super::files::json;
 use super::input::Input;
 use super::options::PictureOptions;
 use super::output::{out, outln};
-use crate::cpu::{Decision, Finding, Inspector, PixelRecord, Reference};
+use crate::cpu::{Decision, Finding, Inspector, MOST_RAYS, PixelRecord, Reference};
 use crate::effects::Effects;
 use crate::engine::{Backend, Engine, Options, Pixels, device_name};
 use crate::gpu::{Choice, Error, Gpu};
@@ -112,6 +112,14 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let (gpu, no_device) = open(&args.device)?;
     check_picture(&viewed)?;
     let inspector = Inspector::new(&viewed, &effects);
+    let rays = inspector.rays(x, y);
+    if rays > MOST_RAYS {
+        let help = "help: --max-depth and --spp show fewer of them";
+        return Err(Failure::new(
+            USAGE,
+            format!("the pixel has {rays} rays, and a table {MOST_RAYS} at the most\n  {help}"),
+        ));
+    }
     let Some(record) = inspector.pixel(x, y) else { return Ok(()) };
     let tiers = match &gpu {
         Some(gpu) => gpu

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use super::COLUMNS;
 use super::baseline::{Baseline, Standing};
 use super::record::{Check, Key, Kind, Run, Verdict};
-use crate::words::count;
+use crate::words::{count, visible};
 
 /// Width of the columns of a line's name and of its convention.
 const NAMES: (usize, usize) = (30, 9);
@@ -18,7 +18,8 @@ pub fn head() -> String {
 }
 
 pub(super) fn row(names: [&str; 2], cells: &[String; 4]) -> String {
-    let mut text = format!("{:<1$}{2:<3$}", names[0], NAMES.0, names[1], NAMES.1);
+    let [name, case] = names.map(visible);
+    let mut text = format!("{name:<0$}{case:<1$}", NAMES.0, NAMES.1);
     for cell in cells {
         let _ = write!(text, "{cell:<CELL$}");
     }

@@ -34,8 +34,8 @@ pub use dd::Dd;
 pub use decision::Decision;
 pub use fill::{filled, nearest_samples};
 pub use inspect::{
-    Blocker, HitRecord, Inspector, LightRecord, Margin, PixelRecord, RayKind, RayRecord, SampleRecord, ShadowRecord,
-    SnellRecord, TestRecord, Verdict,
+    Blocker, HitRecord, Inspector, LightRecord, MOST_RAYS, Margin, PixelRecord, RayKind, RayRecord, SampleRecord,
+    ShadowRecord, SnellRecord, TestRecord, Verdict,
 };
 pub use judge::{Finding, Judge, Trial};
 pub use pick::{PrimaryHit, picked};

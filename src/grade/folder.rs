@@ -83,12 +83,17 @@ impl Folder {
     /// # Errors
     /// A folder that cannot be read.
     pub fn read(folder: &Path, scenes: &[Sought]) -> io::Result<Self> {
-        let (pictures, folders) = entries(folder)?;
+        let (pictures, folders) = entries(folder, true)?;
         let mut found = Self { submissions: Vec::new(), extras: Vec::new() };
         if pictures.is_empty() && !folders.is_empty() {
             for folder in folders {
                 let student = visible_path(Path::new(folder.file_name().unwrap_or_default()));
                 let files = all_pictures(&folder, &mut found.extras);
+                // Where a former run has put its pages.
+                if files.is_empty() && student.ends_with("_files") {
+                    found.extras.push(Extra { picture: visible_path(&folder), reason: "pages, no pictures".into() });
+                    continue;
+                }
                 found.add(Some(student), &files, scenes);
             }
         } else {
@@ -125,8 +130,8 @@ impl Folder {
     }
 }
 
-/// Pictures and folders in a folder, by name, but for hidden ones; links to folders are not followed.
-fn entries(folder: &Path) -> io::Result<(Vec<PathBuf>, Vec<PathBuf>)> {
+/// Pictures and folders in a folder, by name, but for hidden ones; links to folders where they are to be followed.
+fn entries(folder: &Path, follows: bool) -> io::Result<(Vec<PathBuf>, Vec<PathBuf>)> {
     let (mut pictures, mut folders) = (Vec::new(), Vec::new());
     for entry in fs::read_dir(folder)? {
         let entry = entry?;
@@ -134,7 +139,8 @@ fn entries(folder: &Path) -> io::Result<(Vec<PathBuf>, Vec<PathBuf>)> {
         if entry.file_name().as_encoded_bytes().starts_with(b".") {
             continue;
         }
-        if entry.file_type()?.is_dir() {
+        let is_folder = if follows { path.is_dir() } else { entry.file_type()?.is_dir() };
+        if is_folder {
             folders.push(path);
         } else if ending(&path).is_some() && fs::metadata(&path).is_ok_and(|found| found.is_file()) {
             // Of pipes and devices one could read for ever.
@@ -152,7 +158,8 @@ fn all_pictures(folder: &Path, extras: &mut Vec<Extra>) -> Vec<PathBuf> {
     let mut folders = vec![folder.to_owned()];
     let mut at = 0;
     while at < folders.len().min(MOST_FOLDERS) {
-        match entries(&folders[at]) {
+        // A link below a student's folder could lead back to it.
+        match entries(&folders[at], false) {
             Ok((found, inner)) => {
                 pictures.extend(found);
                 folders.extend(inner);

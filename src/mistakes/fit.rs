@@ -15,6 +15,8 @@ use crate::scene::{Scene, Sphere};
 
 /// More spheres than this are not all tried, but those that most differing pixels show.
 const SPHERES: usize = 7;
+/// Of more spheres than this nothing is fitted: each candidate has a world of its own, a few thousand of which are kept.
+const FITTED_SPHERES: usize = 300;
 /// More lights than this are not tried.
 const LIGHTS: usize = 6;
 /// Below this part of a colour a term says too little of its coefficient.
@@ -26,6 +28,9 @@ const DECIMALS: [i32; 4] = [0, 1, 2, 3];
 
 /// Every fit of a cause to what `base` leaves unexplained, by a sample, and by a smaller one where many renderings are needed.
 pub(super) fn fits(case: &Case, scene: &Scene, base: &Variant, [sample, few]: [&Sample; 2]) -> Vec<Way> {
+    if scene.spheres.len() > FITTED_SPHERES {
+        return Vec::new();
+    }
     let fitter = Fitter { case, scene, base, sample, few };
     let spheres = fitter.suspects();
     let lights = 0..scene.lights.len().min(LIGHTS);

@@ -97,6 +97,9 @@ pub fn diagnose(
     effects: &Effects,
     unexplained: &[[u32; 2]],
 ) -> Diagnosis {
+    if is_plain(picture) {
+        return Diagnosis::nothing(unexplained.len());
+    }
     let right = Variant::new(viewed, effects);
     let stage = Stage::new(viewed, right.size);
     let pixels = all_pixels(picture);
@@ -122,12 +125,20 @@ pub fn diagnose(
 
 /// Explains why `picture`, which somebody has of `viewed`, has another size than the scene's: all of its pixels are to be explained.
 pub fn diagnose_size(picture: &Picture, viewed: &ViewedScene, effects: &Effects) -> Diagnosis {
+    if is_plain(picture) {
+        return Diagnosis::nothing(picture.pixels().len());
+    }
     let right = Variant::new(viewed, effects);
     let shown = [picture.width(), picture.height()];
     let all = Sample { differing: all_pixels(picture), equal: Vec::new() };
     let case = Case { stage: Stage::new(viewed, shown), theirs: picture, all, exactly: false };
     let found = diagnosed(&case, viewed, &right, Some(shown));
     found.unwrap_or_else(|| Diagnosis::nothing(case.all.differing.len()))
+}
+
+/// Whether a picture is of one colour all over, which says nothing of how it came about.
+fn is_plain(picture: &Picture) -> bool {
+    picture.pixels().windows(2).all(|pair| pair[0] == pair[1])
 }
 
 /// Column and row of every pixel.

@@ -237,6 +237,7 @@ fn one_file_can_have_any_name_and_the_rest_is_refused() {
         ("scene.txt -o - --aov t", 2, "--aov writes beside the picture"),
         ("scene.txt -o out.png --aov error", 2, "--aov error is of a device's picture"),
         ("scene.txt scene.txt -o . --aov t --aov-file values.exr", 2, "--aov-file takes one scene"),
+        ("scene.txt -o out.png --aov t --aov-file -", 2, "--aov-file takes a file"),
         ("scene.txt -o out.png --aov t --aov-file scene.txt", 6, "an input of this run"),
         ("scene.txt -o out.png --aov t --aov-file out.png", 6, "which --aov-file writes"),
         ("scene.txt -o out.png --aov-format exr", 2, "--aov"),

@@ -196,6 +196,11 @@ fn pictures_of_something_else_have_no_cause() {
     let spoiled = Picture::new(case.scene.width, case.scene.height, rgb).unwrap();
     let found = case.diagnosis(&spoiled);
     assert_eq!((found.causes, found.to_explain), (vec![], 4));
+    for level in [0, 255] {
+        let rgb = vec![level; spoiled.rgb().len()];
+        let plain = Picture::new(case.scene.width, case.scene.height, rgb).unwrap();
+        assert_eq!(case.diagnosis(&plain).causes, []);
+    }
 }
 
 /// Mistakes that other code than the one under test plants: the reference with other settings or another scene, and bytes.

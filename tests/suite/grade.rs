@@ -86,14 +86,34 @@ fn folders_are_students_where_no_picture_lies_beside_them() {
             ("bob/out/deep", &["b.ppm"]),
             ("bob", &["b.png"]),
             (".git", &["a.ppm"]),
+            ("grades_files", &["001-a.html"]),
         ],
         &scenes,
     );
     // How deep a picture lies matters less than its ending.
     assert_eq!(found, ["ann: ann/a.ppm –", "bob: – bob/out/deep/b.ppm"]);
-    assert_eq!(extras, ["bob/b.png: another picture of b is graded"]);
+    assert_eq!(extras, ["bob/b.png: another picture of b is graded", "grades_files: pages, no pictures"]);
     let (found, extras) = files_of(&[("", &["a.ppm"]), ("ann", &["b.ppm"])], &scenes);
     assert_eq!((found, extras), (vec!["all: a.ppm –".to_owned()], vec!["ann: a folder beside pictures".to_owned()]));
+}
+
+/// A link to a folder is a student; one below it, which may lead back, is not followed.
+#[cfg(unix)]
+#[test]
+fn links_to_folders_are_students() {
+    use std::os::unix::fs::symlink;
+    let place = tempdir().unwrap();
+    let students = place.path().join("students");
+    fs::create_dir_all(place.path().join("elsewhere")).unwrap();
+    fs::create_dir_all(&students).unwrap();
+    fs::write(place.path().join("elsewhere/a.ppm"), "").unwrap();
+    symlink(place.path().join("elsewhere"), students.join("ann")).unwrap();
+    symlink(&students, place.path().join("elsewhere/back")).unwrap();
+    let found = Folder::read(&students, &[Sought { stem: "a".into(), output: None }]).unwrap();
+    let names: Vec<_> =
+        found.submissions.iter().map(|found| (found.student.as_deref(), found.pictures.len())).collect();
+    assert_eq!(names, [(Some("ann"), 1)]);
+    assert!(found.submissions[0].pictures[0].is_some() && found.extras.is_empty(), "{found:?}");
 }
 
 #[test]

@@ -327,6 +327,11 @@ fn what_is_no_pixel_is_refused_and_no_device_is_told() {
     assert_eq!(output.status.code(), Some(2));
     let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(stderr.contains("there is no pixel 8 0: columns are 0 to 7, rows 0 to 7"), "{stderr}");
+    // Each hit of the wall, from within, doubles the rays.
+    let room = "SPHERE room 0 0 0 9 9 9 1 1 1 0.1 0 0 1 1 0.5 1\nSPHERE ball 0 0 -3 1 1 1 1 1 1 0.1 0 0 1 1 0.5 1.1\n";
+    let output = pixel(&format!("{WINDOW}{room}"), "scene.txt 4 4 --device cpu --max-depth 24", true);
+    let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.code() == Some(2) && stderr.contains(" rays, and a table 20000 at the most"), "{stderr}");
     assert!(text(&pixel(&scene, "scene.txt 4 4", false)).contains("none, the CPU alone: "));
     assert_eq!(pixel(&scene, "scene.txt 4 4 --device gpu", false).status.code(), Some(4));
 }

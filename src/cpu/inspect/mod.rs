@@ -21,6 +21,9 @@ use crate::effects::Effects;
 use crate::settings::Quantize;
 use crate::viewed::ViewedScene;
 
+/// More rays of a pixel than this make no table that anybody reads.
+pub const MOST_RAYS: u64 = 20_000;
+
 /// Looks into the pixels of a scene's reference.
 #[derive(Debug)]
 pub struct Inspector {
@@ -41,6 +44,12 @@ impl Inspector {
     /// The reference.
     pub fn reference(&self) -> &Reference<f64> {
         &self.reference
+    }
+
+    /// Rays from surfaces to surfaces that the pixel takes: there may be so many that a record of them all does not fit in memory.
+    pub fn rays(&self, i: u32, j: u32) -> u64 {
+        let tally = self.reference.pixels(&[[i, j]], &mut [[0; 3]]);
+        tally.map_or(0, |tally| tally.primary + tally.reflection)
     }
 
     /// All that there is to know of pixel (column `i`, row `j`); `None` where the picture has no such pixel.

@@ -3,7 +3,7 @@
 use super::coarse::{coarse_engine, with_size};
 use super::reduced::MANY_SPHERES;
 use super::{Context, FRAME_MS, SessionRenderer};
-use crate::cpu::{Inspector, picked};
+use crate::cpu::{Inspector, MOST_RAYS, picked};
 use crate::engine::{Backend, Engine, Options};
 use crate::film::encode_png;
 use crate::gpu;
@@ -58,7 +58,9 @@ impl SessionRenderer<'_> {
         let (hit, record) = with_size(context.scene, job.size, |scene| {
             let viewed = scene.viewed(&job.settings);
             let is_quick = scene.spheres.len() <= MANY_SPHERES;
-            let record = is_quick.then(|| Inspector::new(&viewed, &job.effects).pixel(x, y)).flatten();
+            let inspector = is_quick.then(|| Inspector::new(&viewed, &job.effects));
+            let inspector = inspector.filter(|inspector| inspector.rays(x, y) <= MOST_RAYS);
+            let record = inspector.and_then(|inspector| inspector.pixel(x, y));
             (picked(&viewed, x, y), record)
         });
         let labels = Labels::of(context.scene, job.settings.specular);
