@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::failure::{DIFFERENT, Failure, OK, USAGE};
 use super::files::{command, json, report_json, save as save_text};
 use super::guard::Guard;
-use super::input::Input;
+use super::input::{Input, Loaded};
 use super::named::format_by_ending;
 use super::options::{DeviceOptions, PictureOptions, SeveralDevices, open_device};
 use super::output::{errln, out, outln};
@@ -298,14 +298,20 @@ enum Compared {
     OtherSize(Failure, Diagnosis),
 }
 
-/// The picture given, or the device's, against the scene's reference.
-fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Compared, Failure> {
+/// The scene in the size that is asked for.
+fn load(args: &Args, scene: &Path) -> Result<Loaded, Failure> {
     let input = Input::read(scene)?;
     if args.json && input.parsed.scene.is_none() {
         return Err(Failure::new(USAGE, input.parsed.report(false).trim_end()));
     }
     let mut loaded = input.into_renderable(args.json)?;
     args.picture.resize(&mut loaded.scene);
+    Ok(loaded)
+}
+
+/// The picture given, or the device's, against the scene's reference.
+fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Compared, Failure> {
+    let loaded = load(args, scene)?;
     let scene = &loaded.scene;
     let rendered = |rgb| Picture::assemble(scene.width, scene.height, rgb);
     let mut remarks = Remarks::default();

@@ -42,7 +42,7 @@ struct Cone<T> {
 /// The bound of one sample, while it is traced in `T`.
 ///
 /// That of a `PROOF` is the reference's own: errors of colours are left out, rays from the eye touch spheres where exact arithmetic says
-/// so, what is in doubt is taken for a tie, and the scene's numbers are the decimals of its file.
+/// so, what is in doubt all but on a tie is taken for one, and the scene's numbers are the decimals of its file.
 #[derive(Debug, Clone)]
 pub(crate) struct Bound<T, const PROOF: bool> {
     /// Unit roundoff.

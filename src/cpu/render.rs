@@ -215,7 +215,7 @@ pub struct Tally {
     pub reflection: u64,
     /// Pixels with a decision that `f64` leaves open: double-double has taken it.
     pub more_bits: u64,
-    /// Those of them with one that double-double leaves open, too: it was taken for the tie that it all but surely is.
+    /// Those of them with one that double-double leaves open, too: it was taken for a tie where it lies all but on one.
     pub undecided: u64,
 }
 

@@ -30,7 +30,7 @@ pub struct Stages {
     pub reference: u64,
     /// Those of them for which the reference took more bits than `f64` has: double-double.
     pub more_bits: u64,
-    /// Those of them with a decision that double-double leaves open, too: it was taken for the tie that it all but surely is.
+    /// Those of them with a decision that double-double leaves open, too: it was taken for a tie where it lies all but on one.
     pub undecided: u64,
 }
 

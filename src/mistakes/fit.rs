@@ -138,20 +138,26 @@ impl Fitter<'_> {
         Way { name: "sphere-missing", detail, apply: Box::new(apply) }
     }
 
-    /// A colour in which the picture is linear: median of what the pixels ask for.
-    fn linear(&self, name: &'static str, what: &str, now: DVec3, set: &Setter) -> Vec<Way> {
-        let (none, one) = (self.with(|w| set(w, DVec3::ZERO)), self.with(|w| set(w, DVec3::ONE)));
-        let mut asked: [Vec<(f64, f64)>; 3] = Default::default();
+    /// What each channel of each differing pixel asks for of a coefficient, with the part of the colour that it says it by: from the
+    /// colours without it and with 1 in its place.
+    fn ask(&self, [none, one]: [&Variant; 2], mut hear: impl FnMut(usize, (f64, f64))) {
         for &pixel in &self.sample.differing {
             let wanted = self.base.encoding.color(self.case.levels(pixel));
             let without = none.color(&self.case.stage, pixel);
             let part = one.color(&self.case.stage, pixel) - without;
             for c in 0..3 {
                 if part[c] > LEAST_PART && wanted[c].is_finite() {
-                    asked[c].push(((wanted[c] - without[c]) / part[c], part[c]));
+                    hear(c, ((wanted[c] - without[c]) / part[c], part[c]));
                 }
             }
         }
+    }
+
+    /// A colour in which the picture is linear: median of what the pixels ask for.
+    fn linear(&self, name: &'static str, what: &str, now: DVec3, set: &Setter) -> Vec<Way> {
+        let (none, one) = (self.with(|w| set(w, DVec3::ZERO)), self.with(|w| set(w, DVec3::ONE)));
+        let mut asked: [Vec<(f64, f64)>; 3] = Default::default();
+        self.ask([&none, &one], |c, value| asked[c].push(value));
         let mut fitted = now;
         for c in 0..3 {
             if let Some(median) = weighted_median(&mut asked[c]) {
@@ -200,16 +206,7 @@ impl Fitter<'_> {
             let old = *of(&mut copy);
             let (none, one) = (self.with(|w| set(w, 0.0)), self.with(|w| set(w, 1.0)));
             let mut asked = Vec::new();
-            for &pixel in &self.sample.differing {
-                let wanted = self.base.encoding.color(self.case.levels(pixel));
-                let without = none.color(&self.case.stage, pixel);
-                let part = one.color(&self.case.stage, pixel) - without;
-                for c in 0..3 {
-                    if part[c] > LEAST_PART && wanted[c].is_finite() {
-                        asked.push(((wanted[c] - without[c]) / part[c], part[c]));
-                    }
-                }
-            }
+            self.ask([&none, &one], |_, value| asked.push(value));
             let Some(fitted) = weighted_median(&mut asked) else { continue };
             for value in DECIMALS.map(|decimals| rounded(fitted, decimals)).into_iter().chain([fitted]) {
                 let detail = format!("{}: {letter} {} for {old}", self.sphere_name(sphere), rounded(value, 4));

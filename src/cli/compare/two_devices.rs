@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Args, Input, save};
+use super::{Args, load, save};
 use crate::cli::failure::{DIFFERENT, Failure, OK, USAGE};
 use crate::cli::files::report_json;
 use crate::cli::options::{DeviceOptions, open_device};
@@ -44,12 +44,7 @@ pub(super) fn compare(args: &Args, devices: &[DeviceOptions; 2]) -> Result<u8, F
     if args.report.is_some() {
         return Err(Failure::new(USAGE, "--report is for one device's picture, or for two pictures"));
     }
-    let input = Input::read(scene)?;
-    if args.json && input.parsed.scene.is_none() {
-        return Err(Failure::new(USAGE, input.parsed.report(false).trim_end()));
-    }
-    let mut loaded = input.into_renderable(args.json)?;
-    args.picture.resize(&mut loaded.scene);
+    let loaded = load(args, scene)?;
     let scene = &loaded.scene;
     let picture = |rgb| Picture::assemble(scene.width, scene.height, rgb);
     let settings = args.picture.settings()?;
