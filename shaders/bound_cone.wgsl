@@ -211,12 +211,12 @@ fn end_search(ray: Ray, hit: Hit, is_primary: bool) {
 }
 
 // The search for what stands before a light.
-fn begin_shadow(ray: Ray, own: Own, exit: Exit, t_min: real, is_asked: bool) {
+fn begin_shadow(ray: Ray, own: Own, exit: Exit, t_min: real) {
     let length = sqrt(ray.a);
     // Both ends of the way are known.
     bound_base = bound_position + params.moved + bound_place() * (size_of(ray.origin) + length);
     bound_slope = bound_place() * length;
-    is_unsure |= is_asked & !(bound_position <= params.light_allowance);
+    is_unsure |= !(bound_position <= params.light_allowance);
     bound_is_exit_near = false;
     if own.inside {
         let error = exit_error(ray, own);
@@ -245,8 +245,8 @@ fn note_crossed(ray: Ray, body: Body, exit: Exit, t_min: real) {
 }
 
 // All that stands before a light is known.
-fn end_shadow(is_asked: bool) {
-    is_unsure |= is_asked & bound_may_be_blocked & !bound_is_blocked;
+fn end_shadow() {
+    is_unsure |= bound_may_be_blocked & !bound_is_blocked;
 }
 
 // The surface of a hit is known, with its place in object space.

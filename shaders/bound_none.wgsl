@@ -13,11 +13,11 @@ fn note_tested(ray: Ray, body: Body, exit: Exit, range: Range) {}
 
 fn end_search(ray: Ray, hit: Hit, is_primary: bool) {}
 
-fn begin_shadow(ray: Ray, own: Own, exit: Exit, t_min: real, is_asked: bool) {}
+fn begin_shadow(ray: Ray, own: Own, exit: Exit, t_min: real) {}
 
 fn note_crossed(ray: Ray, body: Body, exit: Exit, t_min: real) {}
 
-fn end_shadow(is_asked: bool) {}
+fn end_shadow() {}
 
 fn note_surface(ray: Ray, body: Body, scale: vec3r, local: vec3r, hit: Hit) {}
 

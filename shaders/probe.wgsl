@@ -82,7 +82,7 @@ fn probe_point(@builtin(global_invocation_id) id: vec3<u32>) {
 @compute @workgroup_size(SMALL_GROUP)
 fn probe_blocked(@builtin(global_invocation_id) id: vec3<u32>) {
     params = given_params;
-    let blocked = any_hit(probe_ray(id.x), probe_own(probe_words[id.x]), Light(), 0u, true);
+    let blocked = any_hit(probe_ray(id.x), probe_own(probe_words[id.x]), Light(), 0u);
     probe_flags[id.x] = vec2<u32>(select(0u, PROBE_BLOCKED, blocked), 0u);
     probe_values[id.x] = real(0.0);
 }
@@ -100,7 +100,7 @@ fn probe_lit(@builtin(global_invocation_id) id: vec3<u32>) {
         let shadow_ray = ray_to_light(surface.position, light_of(id.x), id.x);
         n_dot_l = dot(surface.normal, direction_of(shadow_ray) * (real(1.0) / sqrt(shadow_ray.a)));
         bits |= select(0u, PROBE_FACING, n_dot_l > real(0.0));
-        bits |= select(0u, PROBE_BLOCKED, any_hit(shadow_ray, surface.own, light_of(id.x), id.x, true));
+        bits |= select(0u, PROBE_BLOCKED, any_hit(shadow_ray, surface.own, light_of(id.x), id.x));
     }
     probe_flags[id.x] = vec2<u32>(bits, hit.sphere);
     probe_values[id.x] = n_dot_l;

@@ -15,7 +15,7 @@ fn nearest_hit(ray: Ray, own: Own, within: Range) -> Hit {
 }
 
 // Whether any sphere stands between the ray's origin and the light with this index, at t = 1.
-fn any_hit(ray: Ray, own: Own, light: Light, index: u32, is_asked: bool) -> bool {
+fn any_hit(ray: Ray, own: Own, light: Light, index: u32) -> bool {
     let exit = exit_of(own, ray);
     var blocked = false;
     for (var sphere = first_sphere(); sphere < sphere_count() && !blocked; sphere++) {

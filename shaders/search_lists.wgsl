@@ -71,7 +71,7 @@ fn nearest_large(before: Hit, ray: Ray, exit: Exit, range: Range) -> Hit {
 }
 
 // First and one past the last entry of the list for a direction from a light; both 0 where no sphere is.
-fn light_list(light: u32, direction: vec3r, is_asked: bool) -> vec2<u32> {
+fn light_list(light: u32, direction: vec3r) -> vec2<u32> {
     let size = abs(direction);
     let is_x = size.x >= size.y && size.x >= size.z;
     let is_y = !is_x && size.y >= size.z;
@@ -82,7 +82,7 @@ fn light_list(light: u32, direction: vec3r, is_asked: bool) -> vec2<u32> {
     let place = (turned.yz * (real(1.0) / abs(turned.x)) - face.low) * face.per_unit;
     let cell = vec2<u32>(place);
     var list = vec2<u32>();
-    if is_asked && place.x >= real(0.0) && place.y >= real(0.0) && cell.x < face.cells.x && cell.y < face.cells.y {
+    if place.x >= real(0.0) && place.y >= real(0.0) && cell.x < face.cells.x && cell.y < face.cells.y {
         list = cell_at(face.first + cell.y * face.cells.x + cell.x);
     }
     return list;
@@ -102,13 +102,13 @@ fn is_behind(body: Body, light: vec3r, distance: real) -> bool {
 }
 
 // Whether any sphere stands between the ray's origin and the light with this index, at t = 1.
-fn any_hit(ray: Ray, own: Own, light: Light, index: u32, is_asked: bool) -> bool {
+fn any_hit(ray: Ray, own: Own, light: Light, index: u32) -> bool {
     let exit = exit_of(own, ray);
     let from_light = -direction_of(ray);
-    let list = light_list(index, from_light, is_asked);
+    let list = light_list(index, from_light);
     let distance = sqrt(dot(from_light, from_light)) + params.light_slack;
     let t_min = params.shadow_t_min;
-    begin_shadow(ray, own, exit, t_min, is_asked);
+    begin_shadow(ray, own, exit, t_min);
     var blocked = false;
     var is_last = false;
     var at = list.x;
@@ -127,6 +127,6 @@ fn any_hit(ray: Ray, own: Own, light: Light, index: u32, is_asked: bool) -> bool
         }
     }
     is_cut |= !is_last & !blocked & (at < list.y);
-    end_shadow(is_asked);
+    end_shadow();
     return blocked;
 }

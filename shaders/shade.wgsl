@@ -51,34 +51,70 @@ fn specular_term(surface: Surface, material: Material, to_light: vec3r, n_dot_l:
     return material.ks * specular_power(specular_distance(surface, to_light, n_dot_l), material.n);
 }
 
-// A colour and, where it reaches the surface, the light with this index.
-fn with_light(color: vec3r, index: u32, surface: Surface, material: Material, is_seen: bool) -> vec3r {
+// A light as a surface has it.
+struct Incidence {
+    light: Light,
+    // To the light, for the shadow.
+    ray: Ray,
+    // Unit vector.
+    to_light: vec3r,
+    n_dot_l: real,
+}
+
+fn incidence_of(index: u32, surface: Surface, material: Material, is_seen: bool) -> Incidence {
     let light = light_of(index);
-    let shadow_ray = ray_to_light(surface.position, light, index);
-    let to_light = direction_of(shadow_ray) * (real(1.0) / sqrt(shadow_ray.a));
+    let ray = ray_to_light(surface.position, light, index);
+    let to_light = direction_of(ray) * (real(1.0) / sqrt(ray.a));
     let n_dot_l = dot(surface.normal, to_light);
-    note_light(surface, light, shadow_ray, material, n_dot_l, is_seen);
-    // Not lit from behind, and not by a light at distance 0, where N.L is NaN.
-    var is_lit = is_seen & (n_dot_l > real(0.0));
+    note_light(surface, light, ray, material, n_dot_l, is_seen);
+    return Incidence(light, ray, to_light, n_dot_l);
+}
+
+// A colour and, where it reaches the surface, the light with this index, which the surface faces.
+fn with_light(color: vec3r, index: u32, surface: Surface, material: Material) -> vec3r {
+    let at = incidence_of(index, surface, material, true);
     var lit = color;
     if DIFFUSE {
-        lit += light.intensity * material.color * (material.kd * n_dot_l);
+        lit += at.light.intensity * material.color * (material.kd * at.n_dot_l);
     }
     if SPECULAR {
-        lit += light.intensity * specular_term(surface, material, to_light, n_dot_l);
+        lit += at.light.intensity * specular_term(surface, material, at.to_light, at.n_dot_l);
     }
     // After what does not depend on it, unlike src/cpu/shade.rs: processors calculate both at once.
+    var is_lit = true;
     if SHADOWS {
         if COUNT_RAYS {
-            shadow_rays += u32(is_lit);
+            shadow_rays++;
         }
-        is_lit &= !any_hit(shadow_ray, surface.own, light, index, is_lit);
+        is_lit = !any_hit(at.ray, surface.own, at.light, index);
     }
-    note_lit(surface, light, material, to_light, n_dot_l, is_lit);
+    note_lit(surface, at.light, material, at.to_light, at.n_dot_l, is_lit);
     return select(color, lit, is_lit);
 }
 
+// Lights that are asked for together, a bit each.
+const LIGHTS_TOGETHER: u32 = 32u;
+
+// Which of the lights from `first` on the surface faces.
+fn faced_lights(first: u32, surface: Surface, material: Material, is_seen: bool) -> u32 {
+    let count = min(light_count() - first, LIGHTS_TOGETHER);
+    var faced = 0u;
+    var bit = 0u;
+    loop {
+        let at = incidence_of(first + bit, surface, material, is_seen);
+        // Not lit from behind, and not by a light at distance 0, where N.L is NaN.
+        faced |= select(0u, 1u << bit, is_seen & (at.n_dot_l > real(0.0)));
+        bit++;
+        if bit >= count {
+            break;
+        }
+    }
+    return faced;
+}
+
 // Colour of a surface point without its reflection; black where nothing is seen.
+//
+// Lanes go from one light that they face to the next, unlike src/cpu/shade.rs: a light from behind costs its N.L alone.
 fn local_color(surface: Surface, material: Material, is_seen: bool) -> vec3r {
     note_ambient(material, is_seen);
     var color = vec3r();
@@ -86,17 +122,26 @@ fn local_color(surface: Surface, material: Material, is_seen: bool) -> vec3r {
         color = params.ambient * material.color * material.ka;
     }
     if DIFFUSE || SPECULAR {
-        var index = 0u;
-        if index < light_count() {
+        var first = 0u;
+        if first < light_count() {
             loop {
-                color = with_light(color, index, surface, material, is_seen);
-                index++;
-                if index >= light_count() {
+                var faced = faced_lights(first, surface, material, is_seen);
+                if faced != 0u {
+                    loop {
+                        color = with_light(color, first + firstTrailingBit(faced), surface, material);
+                        faced &= faced - 1u;
+                        if faced == 0u {
+                            break;
+                        }
+                    }
+                }
+                first += LIGHTS_TOGETHER;
+                if light_count() <= LIGHTS_TOGETHER || first >= light_count() {
                     break;
                 }
             }
             // Not by the condition of the loop, which compilers may take for granted behind it.
-            is_cut |= index < light_count();
+            is_cut |= first < light_count();
         }
     }
     return color;
