@@ -381,6 +381,21 @@ test('the page says where there is no picture yet, or an old one', async () => {
   await page.waitForTimeout(600);
   await shows('full', /the full picture/);
 
+  // A full picture of an older view is none of the newest.
+  const behind = await chromium.newPage();
+  await behind.routeWebSocket(/ws$/, (socket) => {
+    const line = socket.connectToServer();
+    line.onMessage((message) => socket.send(typeof message === 'string' ? message.replace(/"heard":\d+/, '"heard":0') : message));
+  });
+  await behind.goto(server.url);
+  await settled(behind);
+  await shows('full', /the full picture/, behind);
+  await behind.locator('#effect-shadows').click();
+  await settled(behind, (state) => state.options.includes('--effects'));
+  await behind.waitForTimeout(600);
+  await shows('stale', /the picture before the change/, behind);
+  await behind.close();
+
   const own = await view('scene.txt', { cwd: place.path });
   const other = await open(chromium, own.url);
   await settled(other);
