@@ -7,7 +7,7 @@ trap 'rm -rf "$environment"' EXIT
 cargo fmt --check
 python3 -m venv "$environment"
 pip="$environment/bin/python -m pip --disable-pip-version-check install --quiet"
-$pip maturin mypy numpy pytest typing_extensions
+$pip maturin mypy numpy pytest
 # What the main project has compiled is not compiled again.
 export CARGO_TARGET_DIR="${CARGO_TARGET_DIR:-$PWD/../target}"
 "$environment/bin/maturin" build --quiet --locked --profile dev --out "$environment/wheel"
