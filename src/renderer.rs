@@ -1,6 +1,7 @@
 //! The front door: a device that renders scenes, and the reference that its pictures are held against.
 
 use std::fmt;
+use std::sync::Arc;
 
 use crate::compare::{Explanation, SizeMismatch};
 use crate::cpu::Reference;
@@ -18,7 +19,8 @@ use crate::viewed::ViewedScene;
 
 /// What renders: a Vulkan device, or the CPU reference.
 ///
-/// It keeps the kernels that it has compiled, so one renderer for many pictures is faster than many.
+/// It keeps the kernels that it has compiled, so one renderer for many pictures is faster than many. Clones share the device and
+/// its kernels, and may render at the same time.
 ///
 /// ```
 /// use trueray::{Error, Renderer, Scene, Settings};
@@ -30,9 +32,9 @@ use crate::viewed::ViewedScene;
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Renderer {
-    gpu: Option<Gpu>,
+    gpu: Option<Arc<Gpu>>,
     precision: Request,
     verify: Option<Verify>,
 }
@@ -60,7 +62,7 @@ impl Renderer {
         let gpu = match choice {
             Choice::Cpu => None,
             Choice::Auto if gpu::list()?.is_empty() => None,
-            choice => Some(Gpu::open(&choice)?.keeping_kernels(USUAL_KERNELS)),
+            choice => Some(Arc::new(Gpu::open(&choice)?.keeping_kernels(USUAL_KERNELS))),
         };
         Ok(Self { gpu, precision: Request::default(), verify: None })
     }

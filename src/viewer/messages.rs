@@ -49,6 +49,8 @@ pub(super) struct Numbered<'a> {
 pub struct PageState<'a> {
     /// Grows with every change of the view.
     pub version: u64,
+    /// How many requests for a view this answers.
+    pub heard: u64,
     /// Whether the picture is the one that `trueray render` gives.
     pub finished: bool,
     /// Columns and rows of the picture.
@@ -81,6 +83,8 @@ pub struct PageState<'a> {
     pub controls: Controls,
     /// The eye in the world.
     pub eye: [f64; 3],
+    /// Eye, look-at and up as [`PageRequest::Look`](super::requests::PageRequest::Look) takes them; none for the file's camera.
+    pub camera: Option<[[f64; 3]; 3]>,
     /// The options of `trueray render` that give this picture.
     pub options: String,
     /// The scene.

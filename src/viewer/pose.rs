@@ -55,6 +55,17 @@ impl Pose {
         Self { eye, look_at: eye - DVec3::Z * distance, up }
     }
 
+    /// The pose that an address names.
+    ///
+    /// # Errors
+    ///
+    /// Where it is no view, or out of reach.
+    pub fn of_address(eye: DVec3, look_at: DVec3, up: DVec3) -> Result<Self, String> {
+        let pose = Self { eye, look_at, up };
+        pose.view().map_err(|error| error.to_string())?;
+        if pose.is_within_reach() { Ok(pose) } else { Err(format!("no coordinate may be beyond {FARTHEST:e}")) }
+    }
+
     /// Whether the picture is that of the file's camera.
     pub fn is_of_file(&self) -> bool {
         self.view() == Ok(View::FILE)
@@ -121,8 +132,16 @@ impl Pose {
 
     /// `other` where it is a view within reach, else this one.
     fn accepted(self, other: Self) -> Self {
-        let near = |v: DVec3| v.abs().max_element() <= FARTHEST;
-        if near(other.eye) && near(other.look_at) && other.view().is_ok() { other } else { self }
+        if other.is_within_reach() && other.view().is_ok() { other } else { self }
+    }
+
+    fn is_within_reach(&self) -> bool {
+        [self.eye, self.look_at].iter().all(|v| v.abs().max_element() <= FARTHEST)
+    }
+
+    /// Eye, look-at and up.
+    pub fn vectors(&self) -> [[f64; 3]; 3] {
+        [self.eye, self.look_at, self.up].map(|v| v.to_array())
     }
 
     /// The options of the command line for this view; empty for the file's camera.

@@ -41,6 +41,15 @@ pub enum PageRequest {
         /// By this, > 0.
         by: f64,
     },
+    /// Put the eye where the page's address says, in the words of the command line.
+    Look {
+        /// `--eye`.
+        eye: [f64; 3],
+        /// `--look-at`.
+        look_at: [f64; 3],
+        /// `--up`.
+        up: [f64; 3],
+    },
     /// Back to the view of the start.
     Reset,
     /// Options of the command line, each as its text; what is absent stays.

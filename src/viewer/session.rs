@@ -34,6 +34,8 @@ pub(super) struct OneShots {
     pub(super) measure: bool,
     /// Why the last request was refused.
     pub(super) refusal: Option<String>,
+    /// A request for a view has changed nothing: no picture answers it.
+    pub(super) unchanged: bool,
 }
 
 /// A mailbox between one page and the thread that renders. Its memory is bounded whatever the page sends or leaves unread.
@@ -51,6 +53,8 @@ struct State {
     preview: PreviewOptions,
     /// Grows with every change of the view.
     version: u64,
+    /// Requests for a view so far, those included that have changed nothing.
+    heard: u64,
     one_shots: OneShots,
     /// Number of the last message.
     number: u32,
@@ -71,6 +75,7 @@ impl Session {
             scale,
             preview: PreviewOptions::default(),
             version: 1,
+            heard: 0,
             one_shots: OneShots::default(),
             number: 0,
             waiting: VecDeque::new(),
@@ -106,7 +111,10 @@ impl Session {
                 if let Err(why) = state.view.apply(request, state.scale, &state.start) {
                     state.one_shots.refusal = Some(why);
                 }
-                state.version += u64::from(state.view != before);
+                let changed = state.view != before;
+                state.version += u64::from(changed);
+                state.heard += 1;
+                state.one_shots.unchanged |= !changed;
             }
         }
     }
@@ -124,6 +132,12 @@ impl Session {
 
     pub(super) fn version(&self) -> u64 {
         lock(&self.state).version
+    }
+
+    /// How many requests for a view have led to this version, if it is the newest.
+    pub(super) fn heard_of(&self, version: u64) -> Option<u64> {
+        let state = lock(&self.state);
+        (state.version == version).then_some(state.heard)
     }
 
     /// The scene has changed.

@@ -70,6 +70,8 @@ pub(super) struct SessionRenderer<'g> {
     reduced: Reduced,
     /// Why there is no picture of the newest view, or what was refused.
     problem: Option<String>,
+    /// Requests for a view that the picture at hand answers.
+    heard: u64,
     /// Whether the page is to be told its state, even if no picture is finished.
     tell: bool,
 }
@@ -101,6 +103,7 @@ impl<'g> SessionRenderer<'g> {
             measurement: None,
             reduced: Reduced::default(),
             problem: None,
+            heard: 0,
             tell: true,
         }
     }

@@ -31,6 +31,10 @@ impl ViewState {
             PageRequest::Turn { right, up } => self.pose = Some(pose.turned(right, up)),
             PageRequest::Fly { right, up, forward } => self.pose = Some(pose.flown(right, up, forward, scale)),
             PageRequest::Zoom { by } => self.pose = Some(pose.zoomed(by, scale)),
+            PageRequest::Look { eye, look_at, up } => {
+                let pose = Pose::of_address(eye.into(), look_at.into(), up.into());
+                self.pose = Some(pose.map_err(|why| format!("the address of this page names no view: {why}"))?);
+            }
             PageRequest::Reset => self.pose = start.pose,
             PageRequest::Choose { .. } => self.choose(request, start)?,
             PageRequest::Ack { .. }

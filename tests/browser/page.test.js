@@ -50,6 +50,20 @@ function assertSame(a, b) {
   assert.equal(Buffer.compare(a.rgb, b.rgb), 0, 'the pixels differ');
 }
 
+/** What the page says of its picture, and shows by it. */
+async function shows(kind, words, on = page) {
+  await on.locator(`#stage[data-picture=${kind}]`).waitFor();
+  assert.match(await on.locator('#status').textContent(), words);
+  const canvas = await on.locator('#picture').evaluate((canvas) => [getComputedStyle(canvas).visibility, getComputedStyle(canvas).opacity]);
+  // The opacity is on its way.
+  if (kind === 'none') assert.equal(canvas[0], 'hidden');
+  else assert.equal(canvas[0], 'visible');
+}
+
+async function screenshot(name, on = page) {
+  if (process.env.SCREENSHOTS) await on.screenshot({ path: join(process.env.SCREENSHOTS, `${name}.png`) });
+}
+
 /** The options that the page shows, as `trueray render` takes them. */
 const options = (state) => state.options.split(' ').filter(Boolean);
 
@@ -80,7 +94,9 @@ test('keys, mouse and wheel move the eye, and R brings it back', async () => {
   assertSame(await pixels(page), rendered(place.path, 'scene.txt', options(state)));
 
   const { version } = state;
+  await page.keyboard.down('Shift');
   await page.mouse.wheel(0, -100);
+  await page.keyboard.up('Shift');
   state = await settled(page, (state) => state.version > version);
   assertSame(await pixels(page), rendered(place.path, 'scene.txt', options(state)));
 
@@ -127,11 +143,13 @@ test('the scene is watched, and an error keeps the last picture', async () => {
   const error = page.locator('#error');
   await error.waitFor({ state: 'visible' });
   assert.match(await error.textContent(), /line 9[^]*zero/);
+  await shows('stale', /the scene file has an error/);
   assertSame(await pixels(page), good);
   if (process.env.SCREENSHOTS) await page.screenshot({ path: join(process.env.SCREENSHOTS, 'error.png') });
   writeFileSync(join(place.path, 'scene.txt'), SCENE);
   await error.waitFor({ state: 'hidden' });
   await settled(page);
+  await shows('full', /the full picture/);
   assertSame(await pixels(page), rendered(place.path, 'scene.txt'));
 });
 
@@ -212,4 +230,226 @@ test('a moving picture has fewer samples, or fewer pixels, and at rest it is tha
   await move('ArrowRight', () => window.trueray.state.sampled && !window.trueray.state.sampled.density.fovea);
   await page.locator('#mode').selectOption('coarse');
   await move('ArrowUp', () => window.trueray.state.step > 1);
+});
+
+/** Where the picture is, and how many pixels of the screen one of its own takes. */
+async function shown() {
+  const box = await page.locator('#picture').boundingBox();
+  return { ...box, scale: box.width / 200 };
+}
+
+test('the picture is magnified pixel by pixel, and a click finds the same pixel', async () => {
+  await settled(page);
+  const fit = await shown();
+  assert.equal(fit.scale, 4, 'as large as fits, in whole pixels');
+  await page.locator('#actual').click();
+  assert.equal((await shown()).scale, 1);
+  assert.equal(await page.locator('#scale').textContent(), '100 %');
+  await page.locator('#fit').click();
+  assert.deepEqual(await shown(), fit);
+  assert.equal(await page.locator('#picture').evaluate((canvas) => getComputedStyle(canvas).imageRendering), 'pixelated');
+
+  // What is under the pointer stays there, and the eye where it is.
+  const at = [fit.x + fit.width * 0.42 + 1, fit.y + fit.height * 0.57 + 1];
+  const under = ({ x, y, scale }) => [(at[0] - x) / scale, (at[1] - y) / scale];
+  const { version } = await page.evaluate(() => window.trueray.state);
+  await page.mouse.move(...at);
+  for (let notch = 0; notch < 4; notch += 1) await page.mouse.wheel(0, -100);
+  await page.waitForFunction(() => document.getElementById('picture').clientWidth > 2900);
+  const large = await shown();
+  const [first, after] = [under(fit), under(large)];
+  assert.ok(Math.hypot(first[0] - after[0], first[1] - after[1]) < 0.3, `${first}, ${after}`);
+  await page.mouse.click(...at);
+  await page.waitForFunction(() => window.trueray.pixel);
+  const { x, y } = await page.evaluate(() => window.trueray.pixel);
+  assert.deepEqual([x, y], after.map(Math.floor));
+  const mark = await page.locator('#mark').boundingBox();
+  assert.ok(mark.x < at[0] && at[0] < mark.x + mark.width && mark.y < at[1] && at[1] < mark.y + mark.height);
+  await screenshot('magnified');
+  await page.locator('#smaller').click();
+  const marked = await page.locator('#mark').boundingBox();
+  const smaller = await shown();
+  assert.ok(Math.abs(marked.x + marked.width / 2 - smaller.x - (x + 0.5) * smaller.scale) < 1, 'the mark follows');
+
+  await page.keyboard.down('Control');
+  await page.mouse.move(...at);
+  await page.mouse.down();
+  await page.mouse.move(at[0] + 60, at[1] + 30, { steps: 6 });
+  await page.mouse.up();
+  await page.keyboard.up('Control');
+  const moved = await shown();
+  assert.ok(moved.x - smaller.x > 50 && moved.y - smaller.y > 20, 'moved');
+  await page.keyboard.press('0');
+  assert.deepEqual(await shown(), fit);
+  await page.keyboard.press('+');
+  assert.equal((await shown()).scale, 6);
+  await page.keyboard.press('1');
+  assert.equal((await shown()).scale, 1);
+  assert.equal((await page.evaluate(() => window.trueray.state)).version, version, 'the eye has not moved');
+});
+
+test('two fingers magnify the picture, and one of them orbits', async () => {
+  await settled(page);
+  await page.locator('#actual').click();
+  const box = await shown();
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  const session = await page.context().newCDPSession(page);
+  await session.send('Emulation.setTouchEmulationEnabled', { enabled: true, maxTouchPoints: 2 });
+  const touch = (type, ...points) => session.send('Input.dispatchTouchEvent',
+    { type, touchPoints: points.map(([px, py], id) => ({ x: px, y: py, id })) });
+  await touch('touchStart', [x - 20, y]);
+  await touch('touchStart', [x - 20, y], [x + 20, y]);
+  for (let apart = 25; apart <= 60; apart += 5) await touch('touchMove', [x - apart, y], [x + apart, y]);
+  await touch('touchEnd');
+  const { scale } = await shown();
+  assert.ok(Math.abs(scale - 3) < 0.1, `${scale}`);
+  let state = await page.evaluate(() => window.trueray.state);
+  assert.equal(state.options, '', 'the eye has not moved');
+  assert.equal(await page.evaluate(() => window.trueray.pixel), undefined, 'nor is it a click');
+  await touch('touchStart', [x, y]);
+  for (let way = 5; way <= 40; way += 5) await touch('touchMove', [x + way, y]);
+  await touch('touchEnd');
+  state = await settled(page, (state) => state.options !== '');
+  assert.ok(state.eye[0] < -0.1, `${state.eye}`);
+});
+
+test('the camera is in the address', async () => {
+  await settled(page);
+  assert.equal(await page.evaluate(() => location.hash), '');
+  const steps = await page.evaluate(() => history.length);
+  await page.locator('#picture').focus();
+  await page.keyboard.down('KeyD');
+  await page.waitForFunction(() => window.trueray.state.eye[0] > 0.3);
+  await page.keyboard.up('KeyD');
+  await page.waitForFunction(() => location.hash.startsWith('#eye='));
+  await page.waitForTimeout(300);
+  const state = await settled(page);
+  assert.equal(await page.evaluate(() => history.length), steps, 'the way back is as long as before');
+  const expected = await pixels(page);
+  const address = page.url();
+  const other = await open(chromium, address);
+  assert.equal((await settled(other, (newest) => newest.options === state.options)).eye[0], state.eye[0]);
+  assertSame(await pixels(other), expected);
+  await other.reload();
+  await settled(other, (newest) => newest.options === state.options);
+  assert.equal(other.url(), address);
+
+  // Another address by hand is another view, and what is none is said.
+  await other.evaluate(() => { location.hash = '#eye=1,2,3&look-at=0,0,-10&up=0,1,0'; });
+  await settled(other, (newest) => newest.eye[1] === 2);
+  await other.evaluate(() => { location.hash = '#eye=1,2&look-at=0,0,-10&up=0,1,0'; });
+  await other.evaluate(() => { document.getElementById('effect-shadows').click(); });
+  await settled(other, (newest) => newest.options.includes('--effects'));
+  await other.evaluate(() => { location.hash = '#eye=1,1,1&look-at=1,1,1&up=0,1,0'; });
+  await other.locator('#error', { hasText: 'the same point' }).waitFor();
+  assert.deepEqual(other.problems, []);
+  await other.close();
+  await page.keyboard.press('KeyR');
+  await page.waitForFunction(() => location.hash === '');
+});
+
+test('an address that names no view is said', async () => {
+  const other = await open(chromium, `${server.url}#eye=here`);
+  await other.locator('#error', { hasText: 'The address of this page names no view' }).waitFor();
+  await other.close();
+});
+
+test('the page says where there is no picture yet, or an old one', async () => {
+  // A server that answers nothing.
+  const silent = await chromium.newPage({ viewport: { width: 390, height: 844 } });
+  await silent.routeWebSocket(/ws$/, () => {});
+  await silent.goto(server.url);
+  await shows('none', /rendering the first picture/, silent);
+  await screenshot('none-390', silent);
+  await silent.close();
+
+  await settled(page);
+  await shows('full', /the full picture/);
+  assert.equal(await page.locator('#status').getAttribute('aria-live'), 'polite');
+  process.kill(server.pid, 'SIGSTOP');
+  try {
+    await page.locator('#effect-shadows').click();
+    await shows('stale', /the picture before the change/);
+    await page.waitForFunction(() => getComputedStyle(document.getElementById('picture')).opacity === '0.5');
+    await screenshot('stale');
+  } finally {
+    process.kill(server.pid, 'SIGCONT');
+  }
+  await shows('full', /the full picture/);
+  // What changes nothing is answered, too.
+  await page.locator('#reset').click();
+  await page.waitForTimeout(600);
+  await shows('full', /the full picture/);
+
+  // A full picture of an older view is none of the newest.
+  const behind = await chromium.newPage();
+  await behind.routeWebSocket(/ws$/, (socket) => {
+    const line = socket.connectToServer();
+    line.onMessage((message) => socket.send(typeof message === 'string' ? message.replace(/"heard":\d+/, '"heard":0') : message));
+  });
+  await behind.goto(server.url);
+  await settled(behind);
+  await shows('full', /the full picture/, behind);
+  await behind.locator('#effect-shadows').click();
+  await settled(behind, (state) => state.options.includes('--effects'));
+  await behind.waitForTimeout(600);
+  await shows('stale', /the picture before the change/, behind);
+  await behind.close();
+
+  const own = await view('scene.txt', { cwd: place.path });
+  const other = await open(chromium, own.url);
+  await settled(other);
+  await own.stop();
+  await shows('stale', /connection lost, trying again/, other);
+  await other.close();
+});
+
+test('times are told as median and spread', async () => {
+  await settled(page);
+  await page.locator('#picture').focus();
+  await page.keyboard.down('KeyD');
+  await page.locator('#frame', { hasText: /^[\d.]+ ms, half of the last \d+ frames within [\d.]+–[\d.]+$/ }).waitFor();
+  await page.keyboard.up('KeyD');
+  assert.match(await page.locator('#stages').textContent(), /^render [\d.]+ \([\d.]+–[\d.]+\), prepare .*, compile .* ms$/);
+  // Other settings, other times.
+  await page.locator('#effect-shadows').click();
+  await page.locator('#frame', { hasText: /^[\d.]+ ms$/ }).waitFor();
+});
+
+/** Contrast of two colours in words of CSS, as WCAG has it. */
+function contrast(a, b) {
+  const luminance = (color) => {
+    const [red, green, blue] = /\d+, \d+, \d+/.exec(color)[0].split(', ').map((level) => level / 255)
+      .map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
+    return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+  };
+  const [light, dark] = [luminance(a), luminance(b)].sort((x, y) => y - x);
+  return (light + 0.05) / (dark + 0.05);
+}
+
+test('it is readable in both themes, on a phone and on a desk', async () => {
+  await settled(page);
+  const grounds = {};
+  for (const colorScheme of ['dark', 'light']) {
+    await page.emulateMedia({ colorScheme });
+    for (const [width, height] of [[390, 844], [1440, 900]]) {
+      await page.setViewportSize({ width, height });
+      await screenshot(`${colorScheme}-${width}`);
+      assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `${width}: wider than the window`);
+      const { box, bar } = await page.evaluate(() => ({
+        box: document.getElementById('picture').getBoundingClientRect().toJSON(),
+        bar: document.getElementById('bar').getBoundingClientRect().toJSON(),
+      }));
+      assert.ok(box.left >= 0 && box.right <= width && box.bottom <= bar.top, JSON.stringify([box, bar]));
+    }
+    const colors = await page.evaluate(() => Object.fromEntries(['aside', 'dt', 'dd', 'h2', '#scale', 'button', '.cost', 'small', 'pre']
+      .map((name) => [name, getComputedStyle(document.querySelector(name))]).map(([name, style]) => [name, [style.color, style.backgroundColor]])));
+    const panel = colors.aside[1];
+    for (const [name, [color, ground]] of Object.entries(colors)) {
+      const on = /, 0\)$/.test(ground) ? panel : ground;
+      assert.ok(contrast(color, on) >= 4.5, `${colorScheme}, ${name}: ${color} on ${on}`);
+    }
+    grounds[colorScheme] = panel;
+  }
+  assert.notEqual(grounds.dark, grounds.light);
 });

@@ -44,7 +44,7 @@ await settled(pages[0]);
 const actions = {
   async key(page) {
     await page.locator('#picture').focus();
-    await page.keyboard.press(pick(['KeyW', 'KeyA', 'KeyS', 'KeyD', 'KeyE', 'KeyQ', 'ArrowLeft', 'ArrowUp', 'KeyR', '+', '-']),
+    await page.keyboard.press(pick(['KeyW', 'KeyA', 'KeyS', 'KeyD', 'KeyE', 'KeyQ', 'ArrowLeft', 'ArrowUp', 'KeyR', '+', '-', '0', '1']),
       { delay: random() * 150 });
   },
   async drag(page) {
@@ -55,7 +55,11 @@ const actions = {
     await page.mouse.move(box.x + box.width * random(), box.y + box.height * random(), { steps: 4 });
     await page.mouse.up();
   },
-  async wheel(page) { await page.mouse.wheel(0, pick([-100, 100])); },
+  async wheel(page) {
+    if (random() < 0.5) await page.keyboard.down('Shift');
+    await page.mouse.wheel(0, pick([-100, 100]));
+    await page.keyboard.up('Shift');
+  },
   async effect(page) { await page.locator('.effect input').nth(Math.floor(random() * 8)).click(); },
   async auto(page) { await page.locator('#auto').click(); },
   async choose(page) {
@@ -85,7 +89,7 @@ const actions = {
 /** From a movement to the next picture that the page draws. */
 const latency = (page) => page.evaluate(() => new Promise((done) => {
   const [start, before] = [performance.now(), window.trueray.patches];
-  document.body.dispatchEvent(new KeyboardEvent('keydown', { key: '+', code: 'Equal', bubbles: true }));
+  for (const kind of ['keydown', 'keyup']) document.body.dispatchEvent(new KeyboardEvent(kind, { code: 'ArrowLeft', bubbles: true }));
   const look = () => {
     const waited = performance.now() - start;
     if (window.trueray.patches > before || waited > 20000) done(waited);

@@ -60,7 +60,7 @@ export async function open(browser, url, viewport = { width: 1300, height: 800 }
   page.on('pageerror', (error) => page.problems.push(String(error)));
   page.on('console', (message) => { if (message.type() === 'error') page.problems.push(message.text()); });
   page.on('request', (request) => {
-    if (!request.url().startsWith(url) && !/^(blob|data):/.test(request.url())) page.problems.push(`asks for ${request.url()}`);
+    if (!request.url().startsWith(url.split('#')[0]) && !/^(blob|data):/.test(request.url())) page.problems.push(`asks for ${request.url()}`);
   });
   await page.goto(url);
   return page;

@@ -33,10 +33,15 @@ fn every_device_shows_what_the_reference_explains() {
         let difference = Difference::between(&picture, &expected).unwrap();
         assert_eq!(difference.differing.over_0, explanation.differing);
     }
-    let double = Renderer::new().unwrap().with_precision(Tier::Double).with_verification(Verify::All);
-    assert!(double.render(&scene, &settings).unwrap() == expected);
-    let certified = Renderer::new().unwrap().with_certification();
-    assert!(certified.render(&scene, &settings).unwrap() == expected);
+    let renderer = Renderer::new().unwrap();
+    let double = renderer.clone().with_precision(Tier::Double).with_verification(Verify::All);
+    let certified = renderer.with_certification();
+    std::thread::scope(|scope| {
+        for clone in [double, certified] {
+            let (scene, settings, expected) = (&scene, &settings, &expected);
+            scope.spawn(move || assert!(clone.render(scene, settings).unwrap() == *expected));
+        }
+    });
 }
 
 #[test]

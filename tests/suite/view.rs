@@ -294,6 +294,56 @@ fn the_command_line_of_a_view_renders_it() {
     }
 }
 
+/// What the address of a page keeps leads back to the same picture, and an address that names no view changes nothing.
+#[test]
+fn a_camera_is_told_and_taken_again() {
+    let work = Work::new(SCENE, false);
+    let mut page = work.page();
+    assert_eq!(page.finish()["camera"], Value::Null, "that of the file");
+    page.send(r#"{"do":"orbit","right":0.4,"up":0.2}"#);
+    page.send(r#"{"do":"fly","right":0.1,"up":-0.05,"forward":0.3}"#);
+    let state = page.finish();
+    let camera = state["camera"].as_array().unwrap();
+    let mut other = work.page();
+    let look =
+        |camera: &[Value]| format!(r#"{{"do":"look","eye":{},"look_at":{},"up":{}}}"#, camera[0], camera[1], camera[2]);
+    other.send(&look(camera));
+    assert_eq!(other.finish()["camera"], state["camera"]);
+    assert_eq!(other.rgb, page.rgb);
+    for (index, vector, why) in [
+        (1, camera[0].clone(), "the same point"),
+        (2, serde_json::json!([0, 0, 0]), "it has no direction"),
+        (0, serde_json::json!([1e200, 0, 0]), "no coordinate may be beyond 1e100"),
+    ] {
+        let mut wrong = camera.clone();
+        wrong[index] = vector;
+        other.send(&look(&wrong));
+        let state = other.until(|words| words["problem"].as_str().is_some_and(|problem| problem.contains(why)));
+        let problem = state["problem"].as_str().unwrap();
+        assert!(problem.starts_with("the address of this page names no view: "), "{problem}");
+        assert_eq!(state["camera"].as_array(), Some(camera));
+    }
+}
+
+/// A page knows whether its picture answers what it has asked for, even where that changes nothing.
+#[test]
+fn each_request_for_a_view_is_heard() {
+    let work = Work::new(SCENE, false);
+    let mut page = work.page();
+    assert_eq!(page.finish()["heard"], 0);
+    page.send(r#"{"do":"reset"}"#);
+    let state = page.until(|words| words["heard"] == 1);
+    assert_eq!((&state["version"], &state["finished"]), (&1.into(), &true.into()));
+    page.send(r#"{"do":"choose","max_depth":1}"#);
+    page.send(r#"{"do":"choose","max_depth":100000}"#);
+    let state = page.until(|words| words["heard"] == 3);
+    assert_eq!(state["version"], 2);
+    page.send(r#"{"do":"pick","x":0,"y":0}"#);
+    page.until(|words| words["is"] == "pixel");
+    page.send(r#"{"do":"orbit","right":0.1,"up":0}"#);
+    assert_eq!(page.finish()["heard"], 4);
+}
+
 #[test]
 fn a_page_that_does_not_read_gets_no_queue() {
     let work = Work::new(SCENE, false);

@@ -26,6 +26,7 @@ impl SessionRenderer<'_> {
                 self.problem = Some(why);
                 self.tell = true;
             }
+            self.tell |= std::mem::take(&mut one_shots.unchanged);
             (one_shots.pick.take(), save)
         });
         if let Some(pixel) = pick {

@@ -10,9 +10,11 @@ impl SessionRenderer<'_> {
         self.tell = false;
         let Some(job) = &self.job else { return };
         let Job { view, settings, effects, selection, size, .. } = job;
+        self.heard = self.session.heard_of(job.version).unwrap_or(self.heard);
         let (scene, shown) = (&*context.scene, &self.shown);
         let state = PageState {
             version: job.version,
+            heard: self.heard,
             finished: self.finished(),
             size: *size,
             shrunk: *size != view.size(scene),
@@ -35,6 +37,7 @@ impl SessionRenderer<'_> {
                 res: view.res.map_or_else(String::new, |(width, height)| format!("{width}x{height}")),
             },
             eye: settings.view.eye.to_array(),
+            camera: view.pose.filter(|pose| !pose.is_of_file()).map(|pose| pose.vectors()),
             options: view.options((*size != (scene.width, scene.height)).then_some(*size)),
             scene: SceneSummary { file: context.scene_file, spheres: scene.spheres.len(), lights: scene.lights.len() },
             error: context.error,
