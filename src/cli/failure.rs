@@ -29,7 +29,7 @@ pub(super) const DEVICE_LOST: u8 = 5;
 pub(super) const OUTPUT: u8 = 6;
 /// The system gives no thread where one is needed.
 pub(super) const NO_THREAD: u8 = 7;
-/// SIGTERM ended `render`, which may be repeated: EX_TEMPFAIL of `sysexits.h`.
+/// SIGTERM ended `render`, which may be repeated: `EX_TEMPFAIL` of `sysexits.h`.
 pub(super) const STOPPED: u8 = 75;
 
 /// Why a subcommand ends early.

@@ -9,6 +9,7 @@ use super::named::format_by_ending;
 use super::output::errln;
 use crate::film::{Format, PictureWriter, Target};
 use crate::part::{MergeError, Merger};
+use crate::words::count;
 
 /// Arguments of `trueray merge`.
 #[derive(Debug, clap::Args)]
@@ -48,7 +49,7 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
     merger.rows(|row| Ok::<_, Failure>(writer.write_rows(row)?))?;
     writer.finish()?;
     if !args.quiet {
-        errln!("{target}: {width}x{height} from {}", crate::words::count(args.parts.len() as u64, "part"));
+        errln!("{target}: {width} × {height} from {}", count(args.parts.len() as u64, "part"));
     }
     Ok(OK)
 }

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::str::FromStr;
 
 use super::failure::{Failure, OUTPUT, USAGE};
+use super::output::errln;
 use crate::area::Area;
 use crate::certificate::SceneHash;
 use crate::effects::Effects;
@@ -19,7 +20,7 @@ use crate::words::visible_path;
 
 /// Which part of a picture is rendered, and whether it may be there.
 #[derive(Debug, clap::Args)]
-#[command(next_help_heading = "Parts")]
+#[command(next_help_heading = "Picture")]
 pub(super) struct PartOptions {
     /// Render no more than these pixels, columns X0 to X1 and rows Y0 to Y1 from the top left, the last ones exclusive; the file has
     /// this size and says what it is of. `trueray merge` puts parts together
@@ -30,7 +31,7 @@ pub(super) struct PartOptions {
     tile: Option<Tile>,
     /// Leave a file as it is that is complete and says that it is this very picture or part; files say so that --resume, --crop or
     /// --tile have written. One of something else is an error
-    #[arg(long, conflicts_with_all = WHOLE)]
+    #[arg(long, conflicts_with_all = WHOLE, help_heading = "Output")]
     resume: bool,
 }
 
@@ -113,11 +114,11 @@ pub(super) struct Note {
 }
 
 impl Note {
-    /// Whether the file is there already, and whole.
+    /// Whether the file is there already, and whole; unless it is to be `quiet`, that is said.
     ///
     /// # Errors
     /// Where there is one of something else under its name.
-    pub(super) fn is_done(&self, target: &Target) -> Result<bool, Failure> {
+    pub(super) fn is_done(&self, target: &Target, quiet: bool) -> Result<bool, Failure> {
         let Target::File(path) = target else { return Ok(false) };
         // What is no regular file keeps nothing.
         if !self.resumes || !path.is_file() {
@@ -142,7 +143,13 @@ impl Note {
                 Some([field, own, there]) => refused(format!("{field} is {there} there and {own} here")),
                 None if there.area != own.area => refused(format!("it is part {}, not {}", there.area, own.area)),
                 None if !own.rounds_like(&there) => refused(format!("{} has rendered it", there.device)),
-                None => Ok(reader.check().is_ok()),
+                None => {
+                    let is_done = reader.check().is_ok();
+                    if is_done && !quiet {
+                        errln!("{target} is there already");
+                    }
+                    Ok(is_done)
+                }
             },
         }
     }

@@ -236,10 +236,7 @@ fn render_one(
     }
     let backend = Backend::of(gpu, &selection);
     let note = args.part.note(scene, area, (settings, &effects), (gpu, &selection), format)?;
-    if note.as_ref().map_or(Ok(false), |note| note.is_done(&target))? {
-        if !args.quiet {
-            errln!("{}: {target} is there already", visible(&loaded.name));
-        }
+    if note.as_ref().map_or(Ok(false), |note| note.is_done(&target, args.quiet))? {
         return Ok(None);
     }
 
@@ -298,9 +295,7 @@ fn render_one(
 
     beside.finish(&loaded.name, &target, guard, args.quiet)?;
     certificate.write((settings, &effects), gpu, &selection, stages)?;
-    if cut > 0 && !args.quiet {
-        say_cut(&loaded.name, cut, &device_name(gpu));
-    }
+    say_cut(&loaded.name, if args.quiet { 0 } else { cut }, &device_name(gpu));
     say_not_finite(&loaded.name, not_finite);
     let stats = Stats {
         scene: loaded.name.clone(),
@@ -327,13 +322,18 @@ fn render_one(
         total_ms: ms(loaded.parse_time.max(ready_time) + start.elapsed()),
         peak_memory_mib: peak_memory_mib(),
     };
+    tell(args, &stats);
+    Ok(Some(stats))
+}
+
+/// Prints as much of what was rendered as is wanted.
+fn tell(args: &Args, stats: &Stats) {
     if !args.quiet {
         errln!("{}", stats.summary());
     }
     if args.stats || args.verbose {
         err!("{}", stats.table());
     }
-    Ok(Some(stats))
 }
 
 /// What renders all of the picture, or what renders the part of it that is sampled.
@@ -396,13 +396,12 @@ fn job(args: &Args, loaded: Loaded, target: Target) -> Result<Job, Failure> {
     Ok(Job { loaded, target, format })
 }
 
-/// Says what the device could not do.
+/// Says of how many pixels the device's loops were too short, if of any.
 fn say_cut(name: &str, cut: u64, device: &str) {
-    errln!(
-        "trueray: {}: more turns of a loop than {device} has, so calculated by the CPU reference: {}",
-        visible(name),
-        count(cut, "pixel")
-    );
+    if cut > 0 {
+        let (name, pixels) = (visible(name), count(cut, "pixel"));
+        errln!("trueray: {name}: more turns of a loop than {device} has, so calculated by the CPU reference: {pixels}");
+    }
 }
 
 /// Says of how many pixels the colour is no number, if of any.

@@ -39,8 +39,7 @@ impl RowReader {
     /// # Errors
     /// A file that cannot be read, is another format, or whose header is damaged; a P6 file of another length than its picture has.
     pub fn open(path: &Path) -> Result<Self, ReadError> {
-        let (size, note, rows) = opened(path).map_err(|problem| ReadError { path: path.to_owned(), problem })?;
-        Ok(Self { path: path.to_owned(), size, note, rows })
+        opened(path).map_err(|problem| ReadError { path: path.to_owned(), problem })
     }
 
     /// Width and height, both at least 1.
@@ -98,7 +97,8 @@ impl RowReader {
     }
 }
 
-fn opened(path: &Path) -> Result<((u32, u32), Option<String>, Rows), Problem> {
+fn opened(path: &Path) -> Result<RowReader, Problem> {
+    let whole = |size, note, rows| Ok(RowReader { path: path.to_owned(), size, note, rows });
     let mut file = File::open(path)?;
     let mut start = Vec::new();
     file.by_ref().take(MAX_NOTE as u64 + 256).read_to_end(&mut start)?;
@@ -116,7 +116,7 @@ fn opened(path: &Path) -> Result<((u32, u32), Option<String>, Rows), Problem> {
             }
             file.seek(SeekFrom::Start(head.raster as u64))?;
             let note = note_in(&start[..head.raster]);
-            Ok(((head.width, head.height), note, Rows::P6(BufReader::new(file))))
+            whole((head.width, head.height), note, Rows::P6(BufReader::new(file)))
         }
         Kind::Png => {
             let decoder = Decoder::new_with_limits(BufReader::new(file), png::Limits { bytes: DECODER_BYTES });
@@ -127,8 +127,8 @@ fn opened(path: &Path) -> Result<((u32, u32), Option<String>, Rows), Problem> {
                 return Err(Problem::fatal(why).of_kind(ProblemKind::Unsupported));
             }
             sample_count(info.width, info.height).map_err(|wrong| Problem::fatal(wrong.to_string()))?;
-            let note = text_in(info);
-            Ok(((info.width, info.height), note, Rows::Png(Box::new(reader))))
+            let (size, note) = ((info.width, info.height), text_in(info));
+            whole(size, note, Rows::Png(Box::new(reader)))
         }
     }
 }

@@ -95,7 +95,6 @@ fn each_pixel_of_a_part_is_that_of_the_picture_whatever_renders() {
 /// A part costs no more than its pixels: no other tile is dispatched or listed.
 #[test]
 fn a_part_takes_no_more_than_it_needs() {
-    let Some(gpu) = gpu("a_part_takes_no_more_than_it_needs") else { return };
     let (scene, settings) = (&scenes()[2], Settings::classic());
     let effects = Effects::of(&scene.viewed(&settings));
     let listed = |viewed: &trueray::viewed::ViewedScene| {
@@ -108,7 +107,6 @@ fn a_part_takes_no_more_than_it_needs() {
     let (few_entries, few_tiles) = listed(&scene.viewed(&settings).within(part).unwrap());
     assert!(few_tiles <= 9 && tiles > 50, "{few_tiles} of {tiles}");
     assert!(few_entries * 5 < entries, "{few_entries} of {entries}");
-    drop(gpu);
 }
 
 #[test]
@@ -204,7 +202,7 @@ fn parts_make_the_very_file_of_one_run() {
     }
     let merged = |parts: &str| {
         for ending in ["png", "ppm"] {
-            place.run(&format!("merge {parts} -o merged.{ending}"), 0, "50x40 from");
+            place.run(&format!("merge {parts} -o merged.{ending}"), 0, "50 × 40 from");
             assert!(place.read(&format!("merged.{ending}")) == place.read(&format!("one.{ending}")), "{parts}");
         }
     };
@@ -366,7 +364,7 @@ fn what_is_there_and_whole_is_not_rendered_again() {
     };
     let modified = |name: &str| fs::metadata(place.path(name)).unwrap().modified().unwrap();
     for name in ["a.png", "a.ppm"] {
-        run(&format!("--tile 1/2 -o {name}"), 0, "50x");
+        run(&format!("--tile 1/2 -o {name}"), 0, "50 × 24");
         let (before, time) = (place.read(name), modified(name));
         run(&format!("--tile 1/2 -o {name}"), 0, "is there already");
         assert_eq!(modified(name), time);
@@ -381,7 +379,7 @@ fn what_is_there_and_whole_is_not_rendered_again() {
         // Cut off, or nothing: what a crash of the system can leave.
         for length in [0, 5, 100, before.len() / 2, before.len() - 1] {
             fs::write(place.path(name), &before[..length]).unwrap();
-            run(&format!("--tile 1/2 -o {name}"), 0, "50x24");
+            run(&format!("--tile 1/2 -o {name}"), 0, "50 × 24");
             assert!(place.read(name) == before, "{length} bytes of {name}");
         }
     }
@@ -390,7 +388,7 @@ fn what_is_there_and_whole_is_not_rendered_again() {
     place.render("", "plain.png");
     run("-o plain.png", 6, "it does not say of what it is");
     // A whole picture is one part; and without --resume all are replaced.
-    run("-o whole.png", 0, "50x40");
+    run("-o whole.png", 0, "50 × 40");
     run("-o whole.png", 0, "is there already");
     place.render("", "whole.png");
     assert!(place.read("whole.png") == place.read("plain.png"));
@@ -453,8 +451,8 @@ fn a_stopped_run_asks_to_be_repeated_and_tells_openjd_so() {
     let output =
         place.run("render --progress openjd --device cpu --res 50x40 scene.txt -o a.png", 0, "openjd_status: ");
     let stderr = String::from_utf8_lossy(&output.stderr);
-    let progress = stderr.lines().filter_map(|line| line.strip_prefix("openjd_progress: "));
-    assert_eq!(progress.map(|part| part.parse::<f64>().unwrap()).last(), Some(100.0), "{stderr}");
+    let mut progress = stderr.lines().rev().filter_map(|line| line.strip_prefix("openjd_progress: "));
+    assert_eq!(progress.next().map(|part| part.parse::<f64>().unwrap()), Some(100.0), "{stderr}");
     place.run("render --progress openjd --device cpu gone.txt -o a.png", 3, "openjd_fail: ");
 }
 
