@@ -42,13 +42,13 @@ pub(super) struct Args {
     #[command(flatten)]
     sampling: SamplingOptions,
     #[command(flatten)]
-    part: PartOptions,
-    #[command(flatten)]
     device: DeviceOptions,
     /// How many pixels of a device's picture the CPU reference calculates, too: a number, all, or none; without it 64, or none
     /// with more than 20,000 spheres. Where rounding does not explain a difference, there is no picture
     #[arg(long, value_name = "N", help_heading = "Device")]
     verify: Option<Verify>,
+    #[command(flatten)]
+    part: PartOptions,
     /// Picture file, a folder for it, or `-` for standard output; without it the file that OUTPUT names
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
     output: Option<PathBuf>,

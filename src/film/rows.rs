@@ -4,11 +4,11 @@ use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-use png::{BitDepth, ColorType, Decoder, Info, Reader};
+use ::png::{BitDepth, ColorType, Decoder, DecodingError, Info, Limits, Reader};
 
 use super::problem::{Problem, ProblemKind, ReadError};
 use super::read::{Kind, recognise};
-use super::{ppm, sample_count};
+use super::{png, ppm, sample_count};
 use crate::panics;
 
 /// What a note is called: the keyword of a PNG's text, and the first word of a PPM's comment.
@@ -102,7 +102,10 @@ fn opened(path: &Path) -> Result<RowReader, Problem> {
     let mut file = File::open(path)?;
     let mut start = Vec::new();
     file.by_ref().take(MAX_NOTE as u64 + 256).read_to_end(&mut start)?;
-    let kind = recognise(&start)?;
+    // What a crash of the system can leave of a file.
+    let is_cut = png::MAGIC.starts_with(&start) || b"P6\n".starts_with(&start);
+    let cut_off = |problem: Problem| if is_cut { problem.of_kind(ProblemKind::CutOff) } else { problem };
+    let kind = recognise(&start).map_err(cut_off)?;
     file.seek(SeekFrom::Start(0))?;
     match kind {
         Kind::Ppm => {
@@ -119,7 +122,7 @@ fn opened(path: &Path) -> Result<RowReader, Problem> {
             whole((head.width, head.height), note, Rows::P6(BufReader::new(file)))
         }
         Kind::Png => {
-            let decoder = Decoder::new_with_limits(BufReader::new(file), png::Limits { bytes: DECODER_BYTES });
+            let decoder = Decoder::new_with_limits(BufReader::new(file), Limits { bytes: DECODER_BYTES });
             let reader = decoded(|| decoder.read_info().map_err(|error| damaged(&error)))?;
             let info = reader.info();
             if (info.color_type, info.bit_depth, info.interlaced) != (ColorType::Rgb, BitDepth::Eight, false) {
@@ -147,9 +150,8 @@ fn text_in(info: &Info) -> Option<String> {
     text.get_text().ok().filter(|text| text.len() <= MAX_NOTE)
 }
 
-fn damaged(error: &png::DecodingError) -> Problem {
-    let is_end =
-        matches!(error, png::DecodingError::IoError(error) if error.kind() == std::io::ErrorKind::UnexpectedEof);
+fn damaged(error: &DecodingError) -> Problem {
+    let is_end = matches!(error, DecodingError::IoError(error) if error.kind() == std::io::ErrorKind::UnexpectedEof);
     let kind = if is_end { ProblemKind::CutOff } else { ProblemKind::Damaged };
     Problem::fatal(format!("damaged PNG: {error}")).of_kind(kind)
 }
