@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::area::Area;
 use crate::geometry::reciprocal_power_of_two;
 use crate::scene::Window;
 use crate::view::View;
@@ -30,6 +31,7 @@ pub struct Camera {
     view: View,
     width: u32,
     height: u32,
+    area: Area,
     offset: (f64, f64),
     samples_per_side: u32,
     stretch: f64,
@@ -44,6 +46,7 @@ impl Camera {
             view: settings.view,
             width: scene.width,
             height: scene.height,
+            area: viewed.area(),
             offset: settings.sampling.offset(),
             samples_per_side: settings.samples_per_side,
             stretch: 1.0,
@@ -148,6 +151,11 @@ impl Camera {
     /// Distance of the image plane.
     pub fn near(&self) -> f64 {
         self.window.near
+    }
+
+    /// The part of the picture that is rendered.
+    pub fn area(&self) -> Area {
+        self.area
     }
 
     /// Picture width in pixels.

@@ -135,20 +135,23 @@ impl Subject {
             let Some(certified) = certificate.get(name) else {
                 return Err(format!("it does not say of which {name} it is"));
             };
-            found = found.or_else(|| first_difference(name, certified, value));
+            found = found.or_else(|| {
+                first_difference(name, certified, value)
+                    .map(|[name, there, here]| format!("{name} is {there} there and {here} here"))
+            });
         }
         Ok(found)
     }
 }
 
-/// Where the certified value and the own one differ.
-fn first_difference(name: &str, certified: &Value, own: &Value) -> Option<String> {
-    match (certified, own) {
-        (Value::Object(certified), Value::Object(own)) => own.iter().find_map(|(key, value)| {
-            first_difference(&format!("{name}.{key}"), certified.get(key).unwrap_or(&Value::Null), value)
+/// The first field in which two values differ that `name` stands for, and both of its values. What the second has not is not compared.
+pub(crate) fn first_difference(name: &str, first: &Value, second: &Value) -> Option<[String; 3]> {
+    match (first, second) {
+        (Value::Object(first), Value::Object(second)) => second.iter().find_map(|(key, value)| {
+            first_difference(&format!("{name}.{key}"), first.get(key).unwrap_or(&Value::Null), value)
         }),
-        (certified, own) if certified == own => None,
-        (certified, own) => Some(format!("{name} is {certified} there and {own} here")),
+        (first, second) if first == second => None,
+        (first, second) => Some([name.to_owned(), first.to_string(), second.to_string()]),
     }
 }
 

@@ -7,11 +7,13 @@ use std::time::{Duration, Instant};
 
 use serde::Serialize;
 
+use crate::area::Area;
 use crate::cpu::{Judge, Reference, Tally};
 use crate::effects::Effects;
 use crate::gpu::{self, Gpu, GpuRenderer, Rendered};
 use crate::misuse::{Misuse, check_picture};
 use crate::precision::{Selection, Tier};
+use crate::stop;
 use crate::tiles::TILE;
 use crate::verify::{Verifier, Verify};
 use crate::viewed::ViewedScene;
@@ -126,9 +128,12 @@ impl CpuEngine {
         &mut self,
         pixels: usize,
         action: impl FnOnce(&Reference<f64>) -> Result<Tally, Misuse>,
-    ) -> Result<u64, Misuse> {
+    ) -> Result<u64, gpu::Error> {
         let start = Instant::now();
         let tally = action(&self.reference)?;
+        if stop::is_asked() {
+            return Err(gpu::Error::Stopped);
+        }
         self.render += start.elapsed();
         self.tally = self.tally.plus(tally);
         self.pixels += pixels as u64;
@@ -198,22 +203,22 @@ impl<'a> Engine<'a> {
         Self::with(backend, viewed, effects, &Options::default())
     }
 
-    /// Renders whole rows from row `first` on; returns how many pixels are not finite.
+    /// Renders whole rows from row `first` of its part of the picture on; returns how many pixels are not finite.
     ///
     /// # Errors
     ///
-    /// [`gpu::Error::Misuse`] where these are no rows of the picture.
+    /// [`gpu::Error::Misuse`] where these are no rows of it.
     pub fn rows(&mut self, first: u32, rgb: &mut [u8]) -> Result<u64, gpu::Error> {
         match self {
-            Self::Cpu(cpu) => Ok(cpu.timed(rgb.len() / 3, |reference| reference.rows(first, rgb))?),
+            Self::Cpu(cpu) => cpu.timed(rgb.len() / 3, |reference| reference.rows(first, rgb)),
             Self::Gpu(gpu) => {
                 let rendered = gpu.renderer.rows(first, rgb)?;
-                let width = gpu.renderer.size().0 as usize;
+                let Area { left, top, width, .. } = gpu.renderer.area();
                 let pixels = rgb.as_chunks_mut::<3>().0;
                 let not_finite = gpu.decide(rendered, pixels.len(), |[x, y], color| {
-                    pixels[(y - first) as usize * width + x as usize] = color;
+                    pixels[(y - top - first) as usize * width as usize + (x - left) as usize] = color;
                 })?;
-                gpu.verifier.as_mut().map_or(Ok(()), |verifier| verifier.rows(first, rgb))?;
+                gpu.verifier.as_mut().map_or(Ok(()), |verifier| verifier.rows(top + first, rgb))?;
                 Ok(not_finite)
             }
         }
@@ -288,12 +293,17 @@ impl<'a, O: Output> Engine<'a, O> {
         self
     }
 
-    /// Width and height of the picture.
-    pub fn size(&self) -> (u32, u32) {
+    /// The part of the picture that is rendered.
+    pub fn area(&self) -> Area {
         match self {
-            Self::Cpu(cpu) => cpu.reference.size(),
-            Self::Gpu(gpu) => gpu.renderer.size(),
+            Self::Cpu(cpu) => cpu.reference.area(),
+            Self::Gpu(gpu) => gpu.renderer.area(),
         }
+    }
+
+    /// Its width and height.
+    pub fn size(&self) -> (u32, u32) {
+        self.area().size()
     }
 
     /// Time of all dispatches by the device's own clock, in ms; `None` where it is not read or there is none.
@@ -373,18 +383,18 @@ impl<'a, O: Output> Engine<'a, O> {
 /// A band of rows on its way to the picture.
 #[derive(Debug)]
 pub struct Band<'a> {
-    /// Its first row.
+    /// Its first row, counted from that of the part that is rendered.
     pub first: u32,
     /// Its rows, 3 bytes a pixel.
     pub rgb: &'a [u8],
 }
 
-/// Renders a picture band by band; returns how many pixels are not finite.
+/// Renders a picture, or the engine's part of it, band by band; returns how many pixels are not finite.
 pub fn render_bands<E: From<gpu::Error>>(
     engine: &mut Engine,
     mut sink: impl FnMut(Band) -> Result<(), E>,
 ) -> Result<u64, E> {
-    let (width, height) = engine.size();
+    let Area { top, width, height, .. } = engine.area();
     let row_bytes = width as usize * 3;
     // Bands are of whole tiles, so that none is rendered twice.
     let tiles = |bytes: usize| (bytes / (row_bytes * TILE as usize)).max(1) as u32;
@@ -393,7 +403,8 @@ pub fn render_bands<E: From<gpu::Error>>(
     let mut rgb = Vec::new();
     let (mut first, mut not_finite) = (0, 0);
     while first < height {
-        let rows = now.saturating_mul(TILE).min(height - first);
+        let above = (top + first) % TILE;
+        let rows = (now.saturating_mul(TILE) - above).min(height - first);
         let (start, compile_ms) = (Instant::now(), engine.times().compile_ms);
         rgb.resize(row_bytes * rows as usize, 0);
         not_finite += engine.rows(first, &mut rgb)?;

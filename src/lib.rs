@@ -46,6 +46,8 @@
 pub mod accel;
 #[doc(hidden)]
 pub mod aov;
+#[doc(hidden)]
+pub mod area;
 mod atomic;
 #[doc(hidden)]
 pub mod bench;
@@ -93,6 +95,8 @@ pub mod misuse;
 mod origin;
 mod panics;
 #[doc(hidden)]
+pub mod part;
+#[doc(hidden)]
 pub mod precision;
 mod random;
 mod renderer;
@@ -103,6 +107,7 @@ pub mod sampling;
 #[doc(hidden)]
 pub mod scene;
 pub mod settings;
+mod stop;
 #[doc(hidden)]
 pub mod stress;
 #[doc(hidden)]

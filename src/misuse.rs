@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use crate::area::Area;
 use crate::scene::MAX_RESOLUTION;
 use crate::settings::{Secondary, Settings};
 use crate::viewed::ViewedScene;
@@ -24,8 +25,24 @@ pub enum Misuse {
     Pixel {
         /// Its column and row.
         pixel: [u32; 2],
+        /// The picture, or the part of it that is rendered.
+        area: Area,
+    },
+    /// A rectangle that is empty or not within the picture.
+    Area {
+        /// The rectangle.
+        area: Area,
         /// Width and height of the picture.
         size: (u32, u32),
+    },
+    /// A part of a picture that there is not.
+    Tile {
+        /// Its number, from 0.
+        index: u32,
+        /// Number of parts.
+        count: u32,
+        /// Rows of the picture.
+        height: u32,
     },
     /// Not one colour for each pixel.
     Colors {
@@ -54,9 +71,19 @@ impl fmt::Display for Misuse {
             Self::Rows { first, bytes, size: (width, height) } => {
                 write!(f, "{bytes} bytes from row {first} on are no rows of a picture of {width}x{height} pixels")
             }
-            Self::Pixel { pixel: [x, y], size: (width, height) } => {
+            Self::Pixel { pixel: [x, y], area: Area { top: 0, left: 0, width, height } } => {
                 write!(f, "the pixel in column {x} and row {y} is not of a picture of {width}x{height} pixels")
             }
+            Self::Pixel { pixel: [x, y], area } => {
+                write!(f, "the pixel in column {x} and row {y} is not of the rectangle {area}")
+            }
+            Self::Area { area, size: (width, height) } => {
+                write!(f, "the rectangle {area} is not within a picture of {width}x{height} pixels")
+            }
+            Self::Tile { index, count, .. } if index >= count => {
+                write!(f, "there is no part {index} of {count}: they are counted from 0")
+            }
+            Self::Tile { count, height, .. } => write!(f, "a picture of {height} rows has no {count} parts"),
             Self::Colors { pixels, colors } => write!(f, "{colors} colours for {pixels} pixels"),
             Self::Samples { of: (of_width, of_height), size: (width, height) } => {
                 write!(f, "samples of a picture of {of_width}x{of_height} pixels for one of {width}x{height}")
@@ -101,12 +128,12 @@ pub(crate) fn check_rows(size: (u32, u32), first: u32, bytes: usize) -> Result<u
     }
 }
 
-/// Whether all pixels are of the picture, and there is a colour for each.
-pub(crate) fn check_pixels(size: (u32, u32), pixels: &[[u32; 2]], colors: usize) -> Result<(), Misuse> {
+/// Whether all pixels are of this part of the picture, and there is a colour for each.
+pub(crate) fn check_pixels(area: Area, pixels: &[[u32; 2]], colors: usize) -> Result<(), Misuse> {
     check_colors(pixels.len(), colors)?;
-    match pixels.iter().find(|[x, y]| *x >= size.0 || *y >= size.1) {
+    match pixels.iter().find(|&&pixel| !area.has(pixel)) {
         None => Ok(()),
-        Some(&pixel) => Err(Misuse::Pixel { pixel, size }),
+        Some(&pixel) => Err(Misuse::Pixel { pixel, area }),
     }
 }
 

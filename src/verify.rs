@@ -10,6 +10,7 @@ use std::str::FromStr;
 use std::time::{Duration, Instant};
 
 use crate::accel::{Acceleration, Cover};
+use crate::area::Area;
 use crate::cpu::{Finding, Judge, Reference};
 use crate::effects::Effects;
 use crate::gpu::Error;
@@ -108,15 +109,15 @@ impl Verifier {
 
     /// Looks at those of the chosen pixels that are in these rows.
     pub(crate) fn rows(&mut self, first: u32, rgb: &[u8]) -> Result<(), Error> {
-        let (width, _) = self.reference.size();
+        let Area { left, width, .. } = self.reference.area();
         let count = (rgb.len() / (width as usize * 3)) as u32;
         let rows = first..first + count;
         let here: Vec<[u32; 2]> = match &self.pixels {
             Some(pixels) => pixels.iter().copied().filter(|[_, y]| rows.contains(y)).collect(),
-            None => rows.flat_map(|y| (0..width).map(move |x| [x, y])).collect(),
+            None => rows.flat_map(|y| (left..left + width).map(move |x| [x, y])).collect(),
         };
         let levels = rgb.as_chunks::<3>().0;
-        self.compare(&here, |[x, y]| levels[(y - first) as usize * width as usize + x as usize])
+        self.compare(&here, |[x, y]| levels[(y - first) as usize * width as usize + (x - left) as usize])
     }
 
     /// Looks at as many of these pixels as are chosen of a picture.
@@ -163,11 +164,11 @@ fn chosen(scene: &Scene, cover: &Cover, count: u32) -> Vec<[u32; 2]> {
     let seed = numbers.fold(scene.spheres.len() as u64, |seed, x| {
         (seed.rotate_left(23) ^ x.to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15)
     });
-    let (width, height) = (scene.width, scene.height);
+    let Area { top, left, width, height } = cover.area();
     let mut random = Random::new(seed, u64::from(width) << 32 | u64::from(height));
     let mut at = || {
         let mut below = |side: u32| (random.bits() % u64::from(side)) as u32;
-        [below(width), below(height)]
+        [left + below(width), top + below(height)]
     };
     let mut pixels: Vec<[u32; 2]> = Vec::new();
     for _ in 0..TRIES * u64::from(count) {

@@ -5,8 +5,10 @@ use std::borrow::Cow;
 use glam::DVec3;
 use rayon::prelude::*;
 
+use crate::area::Area;
 use crate::brightness::Scalar;
 use crate::geometry::{COMMON_EXTENT, extent, reciprocal_power_of_two};
+use crate::misuse::Misuse;
 use crate::scene::{Scene, Window};
 use crate::settings::{Secondary, Settings};
 
@@ -21,6 +23,7 @@ pub struct ViewedScene<'a> {
     file_scene: &'a Scene,
     file_settings: Settings,
     units: Units,
+    area: Area,
 }
 
 impl Scene {
@@ -36,6 +39,7 @@ impl Scene {
             file_scene: self,
             file_settings: *settings,
             units,
+            area: Area::whole((self.width, self.height)),
         }
     }
 }
@@ -49,6 +53,26 @@ impl<'a> ViewedScene<'a> {
     /// The settings that belong to it: the eye is at the origin, and distances are in the same units.
     pub fn settings(&self) -> &Settings {
         &self.settings
+    }
+
+    /// The same for a renderer of no more than this part of the picture, each pixel of which is what it is in the whole one.
+    ///
+    /// # Errors
+    ///
+    /// [`Misuse::Area`] where it is no part of it.
+    pub fn within(self, area: Area) -> Result<Self, Misuse> {
+        let size = (self.scene.width, self.scene.height);
+        if area.is_of(size) { Ok(self.of_part(area)) } else { Err(Misuse::Area { area, size }) }
+    }
+
+    /// Likewise of what is a part for sure.
+    pub(crate) fn of_part(self, area: Area) -> Self {
+        Self { area, ..self }
+    }
+
+    /// The part of the picture that is rendered.
+    pub fn area(&self) -> Area {
+        self.area
     }
 
     /// The scene in the coordinates of its file, with the settings that belong to it.

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::bounds::{Enclosure, Solid};
 use super::lists::{Binning, Lists};
+use crate::area::Area;
 use crate::camera::Camera;
 use crate::tiles::{Bounds, TILE};
 
@@ -25,6 +26,8 @@ pub struct ScreenLists {
     pub across: u32,
     width: u32,
     height: u32,
+    /// The part of the picture that the lists are for; elsewhere they are empty.
+    area: Area,
 }
 
 struct Tiles<'a> {
@@ -67,7 +70,14 @@ impl ScreenLists {
             }
             (chosen, entries) = (smaller, smaller_entries);
         }
-        Self { lists: Lists::build(&chosen), shift: chosen.shift, across: chosen.across, width, height }
+        Self {
+            lists: Lists::build(&chosen),
+            shift: chosen.shift,
+            across: chosen.across,
+            width,
+            height,
+            area: camera.area(),
+        }
     }
 
     /// The index of the tile that pixel (column `i`, row `j`) lies in.
@@ -78,8 +88,8 @@ impl ScreenLists {
     /// Which tiles have spheres.
     pub fn cover(&self) -> Cover {
         let has_spheres = self.lists.offsets.windows(2).map(|ends| ends[0] < ends[1]).collect();
-        let Self { shift, across, width, height, .. } = *self;
-        Cover { has_spheres, shift, across, width, height }
+        let Self { shift, across, width, height, area, .. } = *self;
+        Cover { has_spheres, shift, across, width, height, area }
     }
 
     /// The spheres that the pixel in column `i` and row `j` may see.
@@ -97,6 +107,7 @@ pub struct Cover {
     across: u32,
     width: u32,
     height: u32,
+    area: Area,
 }
 
 impl Cover {
@@ -110,11 +121,17 @@ impl Cover {
         listed << (2 * (self.shift - FIRST_SHIFT))
     }
 
+    /// The part of the picture that it is of.
+    pub fn area(&self) -> Area {
+        self.area
+    }
+
     /// Top-left pixels of the tiles of [`TILE`] pixels that any sphere may cover, in rows `first` to `first + count`, in
     /// reading order; `first` is a multiple of [`TILE`].
     pub fn covered(&self, first: u32, count: u32) -> Vec<[u32; 2]> {
         let rows = (first..(first + count).min(self.height)).step_by(TILE as usize);
-        let places = rows.flat_map(|y| (0..self.width).step_by(TILE as usize).map(move |x| [x, y]));
+        let columns = (self.area.left / TILE * TILE..self.area.right()).step_by(TILE as usize);
+        let places = rows.flat_map(|y| columns.clone().map(move |x| [x, y]));
         // Those that have lists of their own, in each.
         let parts = |first: u32, size: u32| (first..(first + TILE).min(size)).step_by(1 << self.shift);
         let has = |&[x, y]: &[u32; 2]| parts(y, self.height).any(|y| parts(x, self.width).any(|x| self.has([x, y])));
@@ -130,8 +147,17 @@ impl Cover {
 impl Tiles<'_> {
     /// How many tiles the rectangles around the spheres have.
     fn rectangles(&self) -> u64 {
-        let span = |[first, last]: [u32; 2]| u64::from((last >> self.shift) - (first >> self.shift) + 1);
-        self.bounds.par_iter().flatten().map(|bounds| span(bounds.rows) * span(bounds.columns)).sum()
+        let Area { left, top, .. } = self.camera.area();
+        let span = |pixels: [u32; 2], first: u32, end: u32| {
+            let cells =
+                common(pixels, first, end).map(|[first, last]| (last >> self.shift) - (first >> self.shift) + 1);
+            u64::from(cells.unwrap_or(0))
+        };
+        let cells = |bounds: &Bounds| {
+            let (right, bottom) = (self.camera.area().right(), self.camera.area().bottom());
+            span(bounds.rows, top, bottom) * span(bounds.columns, left, right)
+        };
+        self.bounds.par_iter().flatten().map(cells).sum()
     }
 }
 
@@ -146,11 +172,20 @@ impl Binning for Tiles<'_> {
 
     fn visit(&self, rank: usize, emit: &mut impl FnMut(usize, usize)) {
         let Some(bounds) = &self.bounds[rank] else { return };
-        let [first, last] = bounds.rows.map(|row| row >> self.shift);
+        let area = self.camera.area();
+        let Some(rows) = common(bounds.rows, area.top, area.bottom()) else { return };
+        let [first, last] = rows.map(|row| row >> self.shift);
         for row in first..=last {
-            let [left, right] = bounds.columns_in([row << self.shift, (row + 1) << self.shift], self.camera);
+            let columns = bounds.columns_in([row << self.shift, (row + 1) << self.shift], self.camera);
+            let Some([left, right]) = common(columns, area.left, area.right()) else { continue };
             let start = row as usize * self.across as usize;
             emit(start + (left >> self.shift) as usize, start + (right >> self.shift) as usize);
         }
     }
+}
+
+/// The first and the last of the pixels from the first to the last of these that are also from `first` up to `end`.
+fn common([from, to]: [u32; 2], first: u32, end: u32) -> Option<[u32; 2]> {
+    let (from, to) = (from.max(first), to.min(end - 1));
+    (from <= to).then_some([from, to])
 }

@@ -7,8 +7,8 @@ Examples:
   trueray scene.txt
   trueray render scene.txt -o scene.png
 
-Exit codes: 0 ok, 2 usage, 3 scene, 4 no device, 5 device lost, 6 output, 7 no thread; \
-128 + n where signal n ended the run. compare: 0 same, 1 different, 2 trouble; grade: 1 some picture is not right; verify: 0 right, 1 wrong, 2 trouble. stress: 1 a promise is broken; conform: 1 a driver is wrong.
+Exit codes: 0 ok, 2 usage, 3 scene, 4 no device, 5 device lost, 6 output, 7 no thread; 75 SIGTERM ended a render; \
+128 + n where signal n ended the run. merge: 1 parts are missing. compare: 0 same, 1 different, 2 trouble; grade: 1 some picture is not right; verify: 0 right, 1 wrong, 2 trouble. stress: 1 a promise is broken; conform: 1 a driver is wrong.
 
 Environment: WGPU_ADAPTER_NAME, WGPU_POWER_PREF, WGPU_BACKEND, VK_DRIVER_FILES are honoured; \
 TRUERAY_NO_TUNING=1 ignores what `bench --tune` has kept, TRUERAY_KERNEL_CACHE=0 the kernels that \
@@ -18,6 +18,15 @@ pub(super) const RENDER: &str = "\
 Examples:
   trueray render scene.txt -o scene.png
   trueray render --convention exact --spp 16 --res 1920x1080 --stats scene.txt -o large.png";
+
+pub(super) const MERGE: &str = "\
+Examples:
+  trueray merge part-*.png -o scene.png
+  trueray merge left.ppm right.ppm -o scene.ppm
+
+`trueray render --tile 0/4 scene.txt -o part-0.png` and so on to 3/4 render the parts; farm/ has templates for job schedulers.
+
+Exit codes: 0 ok, 1 parts are missing, 2 they do not fit together or are damaged, 6 output.";
 
 pub(super) const COMPARE: &str = "\
 Examples:

@@ -15,6 +15,8 @@ pub(super) const OK: u8 = 0;
 pub(super) const DIFFERENT: u8 = 1;
 /// `stress`: a promise is broken on this device.
 pub(super) const BROKEN: u8 = 1;
+/// `merge`: parts are missing.
+pub(super) const INCOMPLETE: u8 = 1;
 /// The arguments make no sense; for `compare` and `verify` any trouble.
 pub(super) const USAGE: u8 = 2;
 /// The scene cannot be read or has errors.
@@ -27,6 +29,8 @@ pub(super) const DEVICE_LOST: u8 = 5;
 pub(super) const OUTPUT: u8 = 6;
 /// The system gives no thread where one is needed.
 pub(super) const NO_THREAD: u8 = 7;
+/// SIGTERM ended `render`, which may be repeated: `EX_TEMPFAIL` of `sysexits.h`.
+pub(super) const STOPPED: u8 = 75;
 
 /// Why a subcommand ends early.
 #[derive(Debug)]
@@ -90,6 +94,7 @@ impl From<gpu::Error> for Failure {
             | Error::Cut { .. } => NO_DEVICE,
             Error::Lost(_) | Error::Shader(_) | Error::Wrong(_) | Error::OtherPicture { .. } => DEVICE_LOST,
             Error::Misuse(_) => USAGE,
+            Error::Stopped => STOPPED,
         };
         let cpu = match &error {
             Error::NoneFound(_) => Some("renders without any"),

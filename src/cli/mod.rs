@@ -18,9 +18,11 @@ mod grade;
 mod guard;
 mod input;
 mod manual;
+mod merge;
 mod named;
 mod options;
 mod output;
+mod part;
 mod pixel;
 mod progress;
 mod render;
@@ -76,6 +78,9 @@ enum Command {
     /// Render scenes to picture files
     #[command(after_help = after_help::RENDER)]
     Render(render::Args),
+    /// Put parts of a picture together that were rendered one by one
+    #[command(after_help = after_help::MERGE)]
+    Merge(merge::Args),
     /// Say where and how two pictures differ, or a picture and its scene's reference
     #[command(after_help = after_help::COMPARE)]
     Compare(compare::Args),
@@ -136,7 +141,7 @@ pub fn run() -> ExitCode {
     };
     color.choose();
     threads::make_pool();
-    if let Err(error) = signals::watch() {
+    if let Err(error) = signals::watch(matches!(cli.command, None | Some(Command::Render(_)))) {
         output::errln!("trueray: signals are not watched, an interrupt may leave temporary files: {error}");
     }
     // These have one code for every trouble.
@@ -152,6 +157,7 @@ pub fn run() -> ExitCode {
     let ended = match cli.command {
         None => meant_command(cli.render.first_scene()).map_or_else(|| render::run(&cli.render), Err),
         Some(Command::Render(args)) => render::run(&args),
+        Some(Command::Merge(args)) => merge::run(&args),
         Some(Command::Compare(args)) => Ok(compare::run(&args)),
         Some(Command::Grade(args)) => grade::run(&args),
         Some(Command::Verify(args)) => Ok(verify::run(&args)),

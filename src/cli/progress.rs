@@ -8,6 +8,8 @@ use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 
+use crate::words::visible;
+
 /// How progress is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum Style {
@@ -19,6 +21,8 @@ pub(super) enum Style {
     Lines,
     /// A JSON object a second, each in a line
     Json,
+    /// Lines that Open Job Description's schedulers read: `openjd_progress`, `openjd_status`, `openjd_fail`
+    Openjd,
     /// Nothing
     None,
 }
@@ -81,7 +85,7 @@ impl Progress {
         }
         match self.style {
             Style::Bar => self.bar().set_position((part * STEPS) as u64),
-            Style::Lines | Style::Json if self.last_line.elapsed() >= INTERVAL => {
+            Style::Lines | Style::Json | Style::Openjd if self.last_line.elapsed() >= INTERVAL => {
                 self.last_line = Instant::now();
                 self.line(part, false);
             }
@@ -120,6 +124,14 @@ impl Progress {
                 };
                 errln!("{}", serde_json::json!(event));
             }
+            (Style::Openjd, left) => {
+                errln!("openjd_progress: {percent:.1}");
+                match left {
+                    _ if finished => errln!("openjd_status: {}: done in {seconds:.1} s", visible(name)),
+                    Some(left) => errln!("openjd_status: {}: {left:.0} s left", visible(name)),
+                    None => {}
+                }
+            }
             (Style::Lines, _) if finished => errln!("{name}: 100 %, done in {seconds:.1} s"),
             (Style::Lines, Some(left)) => errln!("{name}: {percent:.0} %, {left:.0} s left"),
             (Style::Lines, None) => errln!("{name}: 0 %"),
@@ -135,6 +147,15 @@ impl Progress {
             bar.set_message(self.name.clone());
             bar.with_elapsed(self.start.elapsed())
         })
+    }
+}
+
+impl Style {
+    /// Says in its own way, where it has one, that the run has failed.
+    pub(super) fn say_failed(self, message: &str) {
+        if let (Self::Openjd, Some(line)) = (self, message.lines().next()) {
+            errln!("openjd_fail: {}", visible(line));
+        }
     }
 }
 

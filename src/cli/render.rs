@@ -6,13 +6,14 @@ use std::time::{Duration, Instant};
 use super::aov::AovOptions;
 use super::beside::Beside;
 use super::certificate::CertificateFile;
-use super::failure::{Failure, OK, USAGE};
+use super::failure::{DEVICE_LOST, Failure, OK, STOPPED, USAGE};
 use super::files::{check_place, json, save};
 use super::guard::Guard;
 use super::input::{Loaded, print_doubts};
 use super::named::{check_named, format_by_ending};
 use super::options::{DeviceOptions, PictureOptions};
 use super::output::{err, errln};
+use super::part::PartOptions;
 use super::progress::{Progress, Style};
 use super::sampling::{Choice, SamplingOptions};
 use super::stats::{Sampled, Stats, Verified, peak_memory_mib};
@@ -46,6 +47,8 @@ pub(super) struct Args {
     /// with more than 20,000 spheres. Where rounding does not explain a difference, there is no picture
     #[arg(long, value_name = "N", help_heading = "Device")]
     verify: Option<Verify>,
+    #[command(flatten)]
+    part: PartOptions,
     /// Picture file, a folder for it, or `-` for standard output; without it the file that OUTPUT names
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
     output: Option<PathBuf>,
@@ -96,10 +99,15 @@ struct Job {
 
 /// Renders every scene; a scene with errors does not keep the others from being rendered, files that are in each other's way do.
 pub(super) fn run(args: &Args) -> Result<u8, Failure> {
+    render_all(args).inspect_err(|failure| args.progress.say_failed(&failure.message))
+}
+
+fn render_all(args: &Args) -> Result<u8, Failure> {
     if args.scenes.len() > 1 && args.output.as_deref().is_some_and(|output| !output.is_dir()) {
         return Err(Failure::new(USAGE, "several scenes need a folder for -o, or none"));
     }
     check_certificate(args)?;
+    args.part.check(args.scenes.len(), args.output.as_deref())?;
     let settings = args.picture.settings()?;
     let mut guard = Guard::new(&args.scenes);
     guard.options([("--certificate", &args.certificate)])?;
@@ -144,11 +152,13 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
             Ok(stats)
         });
         match rendered {
-            Ok(stats) => all_stats.push(stats),
+            Ok(stats) => all_stats.extend(stats),
             Err(failure) => {
+                args.progress.say_failed(&failure.message);
                 let failed = failure.report();
-                code = if code == OK { failed } else { code };
-                if failed == super::failure::DEVICE_LOST {
+                // What was stopped is to be repeated, whatever else there was.
+                code = if code == OK || failed == STOPPED { failed } else { code };
+                if [DEVICE_LOST, STOPPED].contains(&failed) {
                     break;
                 }
             }
@@ -209,7 +219,7 @@ fn render_one(
     gpu: Option<&Gpu>,
     guard: &mut Guard,
     [open_time, ready_time]: [Duration; 2],
-) -> Result<Stats, Failure> {
+) -> Result<Option<Stats>, Failure> {
     let start = Instant::now();
     if !args.quiet {
         print_doubts(&loaded.name, &args.picture.doubts(&loaded.scene, settings));
@@ -217,13 +227,18 @@ fn render_one(
     args.picture.resize(&mut loaded.scene);
     let scene = &loaded.scene;
     let choice = args.sampling.choice((scene.width, scene.height))?;
-    let viewed = scene.viewed(settings);
+    let area = args.part.area((scene.width, scene.height))?;
+    let viewed = scene.viewed(settings).within(area)?;
     let effects = args.picture.renderable_effects(&viewed)?;
     let selection = args.device.selection(gpu, &viewed, &effects);
     if args.explain || args.verbose {
         explain(&loaded.name, &effects, &selection, choice.as_ref(), gpu);
     }
     let backend = Backend::of(gpu, &selection);
+    let note = args.part.note(scene, area, (settings, &effects), (gpu, &selection), format)?;
+    if note.as_ref().map_or(Ok(false), |note| note.is_done(&target, args.quiet))? {
+        return Ok(None);
+    }
 
     let wants_stats = args.stats || args.stats_json.is_some();
     let options = Options { count_rays: wants_stats && !args.no_ray_counts, ..Options::default() };
@@ -235,11 +250,12 @@ fn render_one(
     };
     let mut certificate = CertificateFile::new(args.certificate.as_deref(), scene);
     // The renderer has what it needs: the spheres go before paths and pixels take memory.
-    let (width, height) = (scene.width, scene.height);
+    let (width, height) = area.size();
     let (spheres, lights) = (scene.spheres.len(), scene.lights.len());
     drop(loaded.scene);
 
-    let mut writer = PictureWriter::create(&target, format, width, height)?;
+    let mut writer =
+        PictureWriter::with_note(&target, format, (width, height), note.as_ref().map(|note| note.line.as_str()))?;
     let mut write_time = Duration::ZERO;
     let style = if args.quiet { Style::None } else { args.progress };
     let mut progress = Progress::of_rows(style, &loaded.name, height);
@@ -279,9 +295,7 @@ fn render_one(
 
     beside.finish(&loaded.name, &target, guard, args.quiet)?;
     certificate.write((settings, &effects), gpu, &selection, stages)?;
-    if cut > 0 && !args.quiet {
-        say_cut(&loaded.name, cut, &device_name(gpu));
-    }
+    say_cut(&loaded.name, if args.quiet { 0 } else { cut }, &device_name(gpu));
     say_not_finite(&loaded.name, not_finite);
     let stats = Stats {
         scene: loaded.name.clone(),
@@ -308,13 +322,18 @@ fn render_one(
         total_ms: ms(loaded.parse_time.max(ready_time) + start.elapsed()),
         peak_memory_mib: peak_memory_mib(),
     };
+    tell(args, &stats);
+    Ok(Some(stats))
+}
+
+/// Prints as much of what was rendered as is wanted.
+fn tell(args: &Args, stats: &Stats) {
     if !args.quiet {
         errln!("{}", stats.summary());
     }
     if args.stats || args.verbose {
         err!("{}", stats.table());
     }
-    Ok(stats)
 }
 
 /// What renders all of the picture, or what renders the part of it that is sampled.
@@ -377,13 +396,12 @@ fn job(args: &Args, loaded: Loaded, target: Target) -> Result<Job, Failure> {
     Ok(Job { loaded, target, format })
 }
 
-/// Says what the device could not do.
+/// Says of how many pixels the device's loops were too short, if of any.
 fn say_cut(name: &str, cut: u64, device: &str) {
-    errln!(
-        "trueray: {}: more turns of a loop than {device} has, so calculated by the CPU reference: {}",
-        visible(name),
-        count(cut, "pixel")
-    );
+    if cut > 0 {
+        let (name, pixels) = (visible(name), count(cut, "pixel"));
+        errln!("trueray: {name}: more turns of a loop than {device} has, so calculated by the CPU reference: {pixels}");
+    }
 }
 
 /// Says of how many pixels the colour is no number, if of any.

@@ -24,7 +24,7 @@ pub(super) use unix::watch;
 
 /// There are no such signals.
 #[cfg(not(unix))]
-pub(super) fn watch() -> std::io::Result<()> {
+pub(super) fn watch(_stops: bool) -> std::io::Result<()> {
     Ok(())
 }
 
@@ -34,14 +34,21 @@ mod unix {
     use std::sync::Arc;
     use std::sync::atomic::{AtomicBool, Ordering};
     use std::thread;
+    use std::time::Duration;
 
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXCPU, SIGXFSZ};
     use signal_hook::flag;
     use signal_hook::iterator::Signals;
     use signal_hook::low_level::emulate_default_handler;
 
-    /// Starts the thread that waits for signals.
-    pub(in super::super) fn watch() -> io::Result<()> {
+    use crate::cli::failure::STOPPED;
+
+    /// What renders has so long to end by itself: a dispatch takes a fraction of it.
+    const GRACE: Duration = Duration::from_secs(5);
+
+    /// Starts the thread that waits for signals. Where the process `stops`, SIGTERM asks renderers to end, and its exit code is
+    /// [`STOPPED`]: schedulers send it, and repeat what has been stopped.
+    pub(in super::super) fn watch(stops: bool) -> io::Result<()> {
         // With a handler, whatever it does, a write beyond the limit of a file's size is an error, as on a full disk.
         flag::register(SIGXFSZ, Arc::default())?;
         let ignored = ignored();
@@ -58,6 +65,12 @@ mod unix {
                 let mut words = super::lock(&super::LAST_WORDS);
                 if let Some(words) = words.take() {
                     words();
+                }
+                if stops && signal == SIGTERM {
+                    crate::stop::ask();
+                    thread::sleep(GRACE);
+                    crate::atomic::abandon_all();
+                    std::process::exit(STOPPED.into());
                 }
                 crate::atomic::abandon_all();
                 end(signal);

@@ -15,10 +15,12 @@ use super::trace::trace;
 use super::vec3::Vec3;
 use super::witness::Witness;
 use crate::accel::{Acceleration, Rounding};
+use crate::area::Area;
 use crate::camera::Camera;
 use crate::effects::Effects;
 use crate::misuse::{Misuse, check_pixels, check_rows};
 use crate::settings::Quantize;
+use crate::stop;
 use crate::viewed::ViewedScene;
 
 /// The CPU reference: the whole specification, in the scalar `T`.
@@ -61,6 +63,11 @@ impl<T: Real> Reference<T> {
         (self.camera.width(), self.camera.height())
     }
 
+    /// The part of the picture that it renders.
+    pub fn area(&self) -> Area {
+        self.camera.area()
+    }
+
     /// The unclamped colour of pixel (column `i`, row `j`); `None` where the picture has no such pixel.
     pub fn color(&self, i: u32, j: u32) -> Option<DVec3> {
         let (width, height) = self.size();
@@ -96,22 +103,27 @@ impl<T: Real> Reference<T> {
         })
     }
 
-    /// Renders whole rows from row `first` on into `rgb`, 3 bytes a pixel, in parallel.
+    /// Renders whole rows from row `first` of its part of the picture on into `rgb`, 3 bytes a pixel, in parallel.
     ///
     /// # Errors
     ///
-    /// [`Misuse::Rows`] where these are no rows of the picture.
+    /// [`Misuse::Rows`] where these are no rows of it.
     pub fn rows(&self, first: u32, rgb: &mut [u8]) -> Result<Tally, Misuse> {
         // A few hundred pixels a task balance the load and keep the cost of a task invisible.
         const CHUNK: usize = 256;
-        check_rows(self.size(), first, rgb.len())?;
-        let width = self.camera.width() as usize;
+        let Area { left, top, .. } = self.area();
+        check_rows(self.area().size(), first, rgb.len())?;
+        let width = self.area().width as usize;
         let samples = u64::from(self.camera.samples_per_side() * self.camera.samples_per_side());
         let chunk = |(chunk, pixels): (usize, &mut [u8])| {
             let (mut tally, mut bound) = (Tally::default(), self.bound());
+            // What is rendered after that is thrown away.
+            if stop::is_asked() {
+                return tally;
+            }
             for (k, pixel) in pixels.as_chunks_mut::<3>().0.iter_mut().enumerate() {
                 let index = chunk * CHUNK + k;
-                let (i, j) = ((index % width) as u32, first + (index / width) as u32);
+                let (i, j) = (left + (index % width) as u32, top + first + (index / width) as u32);
                 let color = self.proven_color(i, j, &mut bound, &mut tally);
                 tally.primary += samples;
                 tally.not_finite += u64::from(!color.to_f64().is_finite());
@@ -128,7 +140,7 @@ impl<T: Real> Reference<T> {
     ///
     /// [`Misuse::Pixel`] where a pixel is not of the picture, [`Misuse::Colors`] where there is not one colour for each.
     pub fn pixels(&self, pixels: &[[u32; 2]], colors: &mut [[u8; 3]]) -> Result<Tally, Misuse> {
-        check_pixels(self.size(), pixels, colors.len())?;
+        check_pixels(self.area(), pixels, colors.len())?;
         let samples = u64::from(self.camera.samples_per_side() * self.camera.samples_per_side());
         let each = |(&[i, j], target): (&[u32; 2], &mut [u8; 3])| {
             let mut tally = Tally::default();

@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 
 use crate::accel::Acceleration;
+use crate::area::Area;
 use crate::cpu::Reference;
 use crate::effects::Effects;
 use crate::gpu::{self, DeviceTimes, Gpu, GpuRenderer, Options, Pixels, Rendered};
@@ -53,6 +54,7 @@ impl Stages {
 pub(super) struct KeptScene {
     scene: Scene,
     settings: Settings,
+    area: Area,
     effects: Effects,
     /// Lists of spheres that the reference may have.
     lists: Cell<Option<Acceleration>>,
@@ -62,14 +64,19 @@ pub(super) struct KeptScene {
 impl KeptScene {
     /// With lists of another renderer of the scene, if there are any.
     pub(super) fn new(viewed: ViewedScene, effects: &Effects, lists: Option<Acceleration>) -> Self {
+        let area = viewed.area();
         let (scene, settings) = viewed.into_file();
         let (scene, effects, lists) = (scene.clone(), effects.clone(), Cell::new(lists));
-        Self { scene, settings, effects, lists, reference: OnceCell::new() }
+        Self { scene, settings, area, effects, lists, reference: OnceCell::new() }
+    }
+
+    fn viewed(&self) -> ViewedScene<'_> {
+        self.scene.viewed(&self.settings).of_part(self.area)
     }
 
     pub(super) fn reference(&self) -> &Reference<f64> {
         self.reference.get_or_init(|| {
-            let viewed = self.scene.viewed(&self.settings);
+            let viewed = self.viewed();
             match self.lists.take() {
                 Some(lists) => Reference::with_lists(&viewed, &self.effects, lists),
                 None => Reference::new(&viewed, &self.effects),
@@ -173,8 +180,7 @@ impl<'a> Certifier<'a> {
 fn prepared<'a>(gpu: &'a Gpu, kept: &KeptScene, took: &mut Duration) -> Result<GpuRenderer<'a, Pixels>, gpu::Error> {
     let start = Instant::now();
     let options = Options { certified: true, ..Options::default() };
-    let viewed = kept.scene.viewed(&kept.settings);
-    let double = GpuRenderer::with(gpu, &viewed, &kept.effects, Tier::Double, &options);
+    let double = GpuRenderer::with(gpu, &kept.viewed(), &kept.effects, Tier::Double, &options);
     *took += start.elapsed();
     double
 }

@@ -1,6 +1,7 @@
 //! Pictures in memory and in files: PPM (P6 and P3) and PNG, 8 bits a channel.
 //!
-//! Files are byte-deterministic: the same pixels always give the same bytes, without dates or names in them.
+//! Files are byte-deterministic: the same pixels always give the same bytes, without dates or names in them; a note of what they
+//! are of is there only where it is asked for.
 //! [`PictureWriter`] streams, so a picture never has to be in memory as a whole to be written;
 //! [`read_picture`] recognises a file by its contents and is strict unless told otherwise.
 
@@ -10,6 +11,7 @@ mod png;
 mod ppm;
 mod problem;
 mod read;
+mod rows;
 mod write;
 
 use std::fmt;
@@ -20,6 +22,7 @@ pub(crate) use exr::encode_exr;
 pub(crate) use pfm::encode_pfm;
 pub use problem::{FilePosition, Problem, ProblemKind, ReadError, SamplePosition, Warning};
 pub use read::{Encoded, Leniency, Reading, decode, read_picture};
+pub use rows::RowReader;
 pub(crate) use write::save_bytes;
 pub use write::{OutputError, PictureWriter, Target, encode_png, save_text};
 

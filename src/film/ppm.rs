@@ -17,6 +17,27 @@ pub(super) fn size(bytes: &[u8]) -> Result<(u32, u32), Problem> {
     Header::read(&mut Scanner { bytes, at: 0, line: 1 }).map(|header| (header.width, header.height))
 }
 
+/// What there is to know before the samples of a P6 file with a byte for each.
+pub(super) struct Head {
+    pub(super) width: u32,
+    pub(super) height: u32,
+    /// Where its samples begin.
+    pub(super) raster: usize,
+}
+
+impl Head {
+    /// From the start of a file.
+    pub(super) fn of(start: &[u8]) -> Result<Self, Problem> {
+        let mut scanner = Scanner { bytes: start, at: 0, line: 1 };
+        let header = Header::read(&mut scanner)?;
+        if header.plain || header.maximum != 255 {
+            let why = "the PPM is no P6 with samples up to 255";
+            return Err(Problem::fatal(why).of_kind(ProblemKind::Unsupported));
+        }
+        Ok(Self { width: header.width, height: header.height, raster: scanner.at })
+    }
+}
+
 pub(super) fn decode(bytes: Vec<u8>, leniency: Leniency) -> Result<Reading, Problem> {
     let mut scanner = Scanner { bytes: &bytes, at: 0, line: 1 };
     let header = Header::read(&mut scanner)?;

@@ -107,12 +107,12 @@ fn load(mut file: impl Read) -> Result<Vec<u8>, Problem> {
     Ok(bytes)
 }
 
-enum Kind {
+pub(super) enum Kind {
     Ppm,
     Png,
 }
 
-fn recognise(bytes: &[u8]) -> Result<Kind, Problem> {
+pub(super) fn recognise(bytes: &[u8]) -> Result<Kind, Problem> {
     let wanted = "wanted is PPM (P6 or P3) or PNG";
     let (looks_like, kind) = match bytes {
         [] => ("the file is empty", ProblemKind::CutOff),

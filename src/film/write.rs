@@ -9,6 +9,7 @@ use std::sync::{Arc, OnceLock};
 
 use png::StreamWriter;
 
+use super::rows::NOTE;
 use super::{Format, sample_count};
 use crate::atomic::{self, Destination, folder_of};
 
@@ -107,13 +108,26 @@ impl PictureWriter {
     /// # Errors
     /// An impossible size, a folder that does not exist, a file or folder without write permission.
     pub fn create(target: &Target, format: Format, width: u32, height: u32) -> Result<Self, OutputError> {
+        Self::with_note(target, format, (width, height), None)
+    }
+
+    /// Likewise; the file has this note, one line that [`RowReader`](super::RowReader) finds again.
+    ///
+    /// # Errors
+    /// As those of [`create`](Self::create).
+    pub fn with_note(
+        target: &Target,
+        format: Format,
+        (width, height): (u32, u32),
+        note: Option<&str>,
+    ) -> Result<Self, OutputError> {
         let error = |source| target.error("create", source);
         let missing = sample_count(width, height).map_err(|wrong| error(invalid(wrong)))? as u64;
         let (raw, destination) = target.open(format.least_bytes(width, height)).map_err(error)?;
         let failure = Failure::default();
         let output = BufWriter::with_capacity(1 << 16, Watched { raw, failure: Arc::clone(&failure) });
-        let encoder =
-            Encoder::new(format, output, width, height).map_err(|wrapped| error(original(&failure, wrapped)))?;
+        let encoder = Encoder::new(format, output, (width, height), note)
+            .map_err(|wrapped| error(original(&failure, wrapped)))?;
         Ok(Self { encoder, destination, target: target.clone(), failure, missing })
     }
 
@@ -341,17 +355,18 @@ enum Encoder {
 }
 
 impl Encoder {
-    fn new(format: Format, mut output: Output, width: u32, height: u32) -> io::Result<Self> {
+    fn new(format: Format, mut output: Output, (width, height): (u32, u32), note: Option<&str>) -> io::Result<Self> {
+        let comment = note.map(|note| format!("# {NOTE} {note}\n")).unwrap_or_default();
         match format {
             Format::P6 => {
-                write!(output, "P6\n{width} {height}\n255\n")?;
+                write!(output, "P6\n{comment}{width} {height}\n255\n")?;
                 Ok(Self::P6(output))
             }
             Format::P3 => {
-                write!(output, "P3\n{width} {height}\n255\n")?;
+                write!(output, "P3\n{comment}{width} {height}\n255\n")?;
                 Ok(Self::P3(Plain::new(output, width)))
             }
-            Format::Png => Ok(Self::Png(Box::new(png_writer(output, width, height)?.into_stream_writer()?))),
+            Format::Png => Ok(Self::Png(Box::new(png_writer(output, width, height, note)?.into_stream_writer()?))),
         }
     }
 
@@ -377,7 +392,7 @@ impl Encoder {
 /// More or fewer samples than the picture has.
 pub fn encode_png(width: u32, height: u32, rgb: &[u8]) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    let mut writer = png_writer(&mut bytes, width, height)?;
+    let mut writer = png_writer(&mut bytes, width, height, None)?;
     let mut stream = writer.stream_writer()?;
     stream.write_all(rgb)?;
     stream.finish()?;
@@ -385,11 +400,19 @@ pub fn encode_png(width: u32, height: u32, rgb: &[u8]) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-fn png_writer<W: Write>(output: W, width: u32, height: u32) -> Result<png::Writer<W>, png::EncodingError> {
+fn png_writer<W: Write>(
+    output: W,
+    width: u32,
+    height: u32,
+    note: Option<&str>,
+) -> Result<png::Writer<W>, png::EncodingError> {
     let mut encoder = png::Encoder::new(output, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Fast);
+    if let Some(note) = note {
+        encoder.add_itxt_chunk(NOTE.to_owned(), note.to_owned())?;
+    }
     encoder.write_header()
 }
 

@@ -16,6 +16,7 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 
 use crate::accel::{Acceleration, Cover, Density, Rounding};
+use crate::area::Area;
 use crate::brightness::Scalar;
 use crate::effects::{Effect, Effects};
 use crate::exact::TangentMargin;
@@ -322,6 +323,11 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
     /// Width and height of the picture.
     pub fn size(&self) -> (u32, u32) {
         self.size
+    }
+
+    /// The part of the picture that it renders.
+    pub fn area(&self) -> Area {
+        self.cover.area()
     }
 
     /// Times of the work so far.

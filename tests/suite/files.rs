@@ -329,7 +329,7 @@ fn send(signal: &str, child: &Child) {
     assert!(Command::new("kill").args([&format!("-{signal}"), &child.id().to_string()]).status().unwrap().success());
 }
 
-/// The signals, and the code that a shell makes of each.
+/// The signals by name and number.
 #[cfg(unix)]
 const SIGNALS: [(&str, i32); 4] = [("INT", 2), ("TERM", 15), ("HUP", 1), ("XCPU", 24)];
 
@@ -360,7 +360,9 @@ fn interrupts_leave_the_old_picture_or_the_new_one_and_nothing_else() {
         if status.success() {
             assert!(now == new);
         } else {
-            assert_eq!(status.signal(), Some(number), "{status}");
+            // SIGTERM asks for another try.
+            let is_stopped = signal == "TERM" && status.code() == Some(75);
+            assert!(is_stopped || signal != "TERM" && status.signal() == Some(number), "{signal}: {status}");
             assert!(now == OLD.as_bytes() || now == new, "{signal}: {} bytes", now.len());
             interrupted += 1;
         }

@@ -42,6 +42,7 @@ mod oracle;
 #[cfg(feature = "view")]
 mod page;
 mod parse;
+mod parts;
 mod phong;
 mod pictures;
 mod pixel;

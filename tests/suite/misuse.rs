@@ -2,6 +2,7 @@
 //! `trueray::gpu::GpuRenderer`.
 
 use glam::DVec3;
+use trueray::area::Area;
 use trueray::cpu::{Reference, filled};
 use trueray::effects::{Effect, EffectSet, Effects, Request};
 use trueray::engine::{Backend, Engine, Filler, Options, Pixels, render_partial, render_picture};
@@ -48,7 +49,7 @@ fn only_rows_and_pixels_of_the_picture_are_rendered() {
         let mut color = [[7; 3]];
         for pixel in [[40, 0], [0, 40], [100, 100], [u32::MAX, u32::MAX]] {
             let error = list.pixels(&[pixel], &mut color).unwrap_err();
-            assert_eq!(error, Error::Misuse(Misuse::Pixel { pixel, size: SIZE }), "{backend:?}");
+            assert_eq!(error, Error::Misuse(Misuse::Pixel { pixel, area: Area::whole(SIZE) }), "{backend:?}");
         }
         assert_eq!(color, [[7; 3]]);
         for colors in [0, 2] {

@@ -65,6 +65,8 @@ pub enum Error {
     Lost(String),
     /// What is asked for makes no sense on any device.
     Misuse(Misuse),
+    /// The process has been asked to end.
+    Stopped,
 }
 
 impl Error {
@@ -118,6 +120,7 @@ impl fmt::Display for Error {
             }
             Self::Lost(why) => write!(f, "the device was lost: {why}"),
             Self::Misuse(misuse) => misuse.fmt(f),
+            Self::Stopped => f.write_str("ended as it was asked to, before the picture was complete"),
         }
     }
 }

@@ -10,6 +10,7 @@ use super::tiles::TILE_PIXELS;
 use super::work::Work;
 use crate::gpu::device::error::Error;
 use crate::misuse::check_pixels;
+use crate::stop;
 
 impl GpuRenderer<'_, Pixels> {
     /// Renders the pixels in these columns and rows; each has the value that it has in the full picture.
@@ -18,7 +19,7 @@ impl GpuRenderer<'_, Pixels> {
     ///
     /// [`Error::Misuse`] where a pixel is not of the picture, or there is not one colour for each.
     pub fn pixels(&mut self, pixels: &[[u32; 2]], colors: &mut [[u8; 3]]) -> Result<Rendered, Error> {
-        check_pixels(self.size, pixels, colors.len())?;
+        check_pixels(self.area(), pixels, colors.len())?;
         self.gpu.device.guarded(|| self.list(pixels, colors))
     }
 
@@ -36,6 +37,9 @@ impl GpuRenderer<'_, Pixels> {
         let mut rendered = Rendered::default();
         let mut start = 0;
         while start < list.len() {
+            if stop::is_asked() {
+                return Err(Error::Stopped);
+            }
             let work = match self.work.take() {
                 Some(work) => work,
                 None => self.build()?,

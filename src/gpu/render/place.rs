@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::rendered::Rendered;
 use super::tiles::TILE_PIXELS;
+use crate::area::Area;
 use crate::gpu::device::error::Error;
 use crate::gpu::device::open::Device;
 use crate::gpu::shared::{STATUS_CUT, STATUS_FLAGS, STATUS_NOT_FINITE, STATUS_UNSURE};
@@ -68,16 +69,16 @@ impl Statuses {
     }
 }
 
-/// Copies pixels of a dispatch in tile order to their places in rows, of which `first` is the first; returns what their statuses say.
+/// Copies pixels of a dispatch in tile order to their places in `rgb`, the rows of `area`; returns what their statuses say.
 pub(super) fn place_tiles(
     pixels: &[u32],
     dispatch_bits: u8,
     tiles: &[[u32; 2]],
-    first: u32,
-    width: u32,
+    area: Area,
     rgb: &mut [u8],
 ) -> Statuses {
-    let row_bytes = width as usize * 3;
+    let Area { left, top: first, .. } = area;
+    let row_bytes = area.width as usize * 3;
     let mut by_row: Vec<_> = tiles.iter().zip(pixels.chunks(TILE_PIXELS)).collect();
     by_row.sort_by_key(|(tile, _)| tile[1]);
     // The rows in `band` of the tiles that begin in row `y`, of which the first `above` lie before it.
@@ -85,10 +86,13 @@ pub(super) fn place_tiles(
         let start = by_row.partition_point(|(tile, _)| tile[1] < y);
         let mut statuses = Statuses::of(dispatch_bits);
         for (tile, pixels) in by_row[start..].iter().take_while(|(tile, _)| tile[1] == y) {
-            let across = TILE.min(width - tile[0]) as usize;
+            // A tile may reach beyond the area on either side.
+            let columns = tile[0].max(left)..(tile[0] + TILE).min(area.right());
+            let before = (columns.start - tile[0]) as usize;
             let lines = pixels.chunks(TILE as usize).skip(above as usize);
             for (j, (row, pixels)) in (y + above..).zip(band.chunks_mut(row_bytes).zip(lines)) {
-                let row = &mut row[tile[0] as usize * 3..][..across * 3];
+                let row = &mut row[(columns.start - left) as usize * 3..][..columns.len() * 3];
+                let pixels = &pixels[before..];
                 let mut any = 0;
                 for (target, pixel) in row.as_chunks_mut::<3>().0.iter_mut().zip(pixels) {
                     let [r, g, b, status] = pixel.to_le_bytes();
@@ -97,7 +101,7 @@ pub(super) fn place_tiles(
                 }
                 // Most pixels have nothing to say.
                 if any != 0 {
-                    for (i, pixel) in (tile[0]..width).zip(pixels) {
+                    for (i, pixel) in columns.clone().zip(pixels) {
                         statuses.add(pixel.to_le_bytes()[3], [i, j]);
                     }
                 }

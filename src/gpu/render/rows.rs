@@ -11,46 +11,53 @@ use super::place::{Statuses, place_tiles};
 use super::rendered::Rendered;
 use super::tiles::TILE_PIXELS;
 use super::work::Work;
+use crate::area::Area;
 use crate::gpu::device::error::Error;
 use crate::misuse::check_rows;
+use crate::stop;
 use crate::tiles::TILE;
 
 impl GpuRenderer<'_, Rows> {
-    /// Renders rows `first` on into `rgb`, whole rows of 3 bytes a pixel.
+    /// Renders rows `first` of its part of the picture on into `rgb`, whole rows of 3 bytes a pixel.
     ///
     /// # Errors
     ///
-    /// [`Error::Misuse`] where these are no rows of the picture.
+    /// [`Error::Misuse`] where these are no rows of it.
     pub fn rows(&mut self, first: u32, rgb: &mut [u8]) -> Result<Rendered, Error> {
-        let count = check_rows(self.size, first, rgb.len())?;
-        self.gpu.device.guarded(|| self.bands(first, count, rgb))
+        let area = self.area();
+        let count = check_rows(area.size(), first, rgb.len())?;
+        self.gpu.device.guarded(|| self.bands(area.top + first, count, rgb))
     }
 
     fn bands(&mut self, first: u32, count: u32, rgb: &mut [u8]) -> Result<Rendered, Error> {
-        let row_bytes = self.size.0 as usize * 3;
+        let row_bytes = self.area().width as usize * 3;
         let most = self.tile_words.most_rows();
         let mut rendered = Rendered::default();
         for (start, rgb) in (first..first + count).step_by(most as usize).zip(rgb.chunks_mut(row_bytes * most as usize))
         {
             rendered.add(self.band(start, rgb)?);
         }
-        self.pixels += u64::from(self.size.0) * u64::from(count);
+        self.pixels += u64::from(self.area().width) * u64::from(count);
         Ok(rendered)
     }
 
     /// Renders rows whose tiles fit into words together.
     fn band(&mut self, first: u32, rgb: &mut [u8]) -> Result<Rendered, Error> {
-        let row_bytes = self.size.0 as usize * 3;
+        let row_bytes = self.area().width as usize * 3;
         let count = (rgb.len() / row_bytes) as u32;
         let background = self.background;
         rgb.par_chunks_mut(row_bytes).for_each(|row| row.as_chunks_mut::<3>().0.fill(background));
 
+        let area = Area { top: first, height: count, ..self.area() };
         let above = first % TILE;
         let mut tiles = self.cover.covered(first - above, above + count);
         tiles.sort_by_cached_key(|&tile| curve(tile));
         let mut rendered = Rendered::default();
         let mut rest = tiles.as_slice();
         while !rest.is_empty() {
+            if stop::is_asked() {
+                return Err(Error::Stopped);
+            }
             let work = match self.work.take() {
                 Some(work) => work,
                 None => self.build()?,
@@ -58,17 +65,15 @@ impl GpuRenderer<'_, Rows> {
             let (now, later) = rest.split_at(rest.len().min(work.capacity.min(self.tiles_per_dispatch) as usize));
             let now = &dealt(now, self.hands);
             let took = self.dispatch(&work, now)?;
-            let statuses = self.read_tiles(&work, now, first, rgb)?;
+            let statuses = self.read_tiles(&work, now, area, rgb)?;
             if self.walks_at_once_instead(&statuses) {
                 continue;
             }
             rendered.add(statuses.checked(&self.gpu.device)?);
-            let end = [self.size.0, first + count];
             self.add_rays(&work, now.len() * TILE_PIXELS, |place| {
                 let ([left, top], place) = (now[place / TILE_PIXELS], (place % TILE_PIXELS) as u32);
-                let [x, y] = [left + place % TILE, top + place / TILE];
-                // A tile may reach beyond the picture, or into rows that are not asked for.
-                x < end[0] && (first..end[1]).contains(&y)
+                // A tile may reach beyond the picture, or into pixels that are not asked for.
+                area.has([left + place % TILE, top + place / TILE])
             })?;
             self.work = Some(work);
             self.set_pace(now.len(), took);
@@ -77,11 +82,11 @@ impl GpuRenderer<'_, Rows> {
         Ok(rendered)
     }
 
-    /// Puts the pixels of `tiles` into `rgb`, whose first row is `first`.
-    fn read_tiles(&mut self, work: &Work, tiles: &[[u32; 2]], first: u32, rgb: &mut [u8]) -> Result<Statuses, Error> {
+    /// Puts the pixels of `tiles` into `rgb`, the rows of `area`.
+    fn read_tiles(&mut self, work: &Work, tiles: &[[u32; 2]], area: Area, rgb: &mut [u8]) -> Result<Statuses, Error> {
         let start = Instant::now();
-        let (width, dispatch_bits) = (self.size.0, self.dispatch_bits());
-        let place = |pixels: &[u32]| place_tiles(pixels, dispatch_bits, tiles, first, width, rgb);
+        let dispatch_bits = self.dispatch_bits();
+        let place = |pixels: &[u32]| place_tiles(pixels, dispatch_bits, tiles, area, rgb);
         let statuses = work.pixels.read(&self.gpu.device, tiles.len() * TILE_PIXELS, place)?;
         self.times.read_back += start.elapsed();
         Ok(statuses)
