@@ -121,6 +121,8 @@ pub mod viewed;
 #[cfg(feature = "view")]
 #[doc(hidden)]
 pub mod viewer;
+#[doc(hidden)]
+pub mod views;
 mod words;
 
 pub use compare::{Difference, Explanation};

@@ -1,5 +1,7 @@
 //! `trueray render` and `trueray SCENE.txt`.
 
+mod views;
+
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -38,6 +40,8 @@ pub(super) struct Args {
     scenes: Vec<PathBuf>,
     #[command(flatten)]
     picture: PictureOptions,
+    #[command(flatten)]
+    views: views::Options,
     #[command(flatten)]
     sampling: SamplingOptions,
     #[command(flatten)]
@@ -96,6 +100,9 @@ struct Job {
 
 /// Renders every scene; a scene with errors does not keep the others from being rendered, files that are in each other's way do.
 pub(super) fn run(args: &Args) -> Result<u8, Failure> {
+    if args.views.are_given() {
+        return views::run(args);
+    }
     if args.scenes.len() > 1 && args.output.as_deref().is_some_and(|output| !output.is_dir()) {
         return Err(Failure::new(USAGE, "several scenes need a folder for -o, or none"));
     }
@@ -284,6 +291,7 @@ fn render_one(
     }
     say_not_finite(&loaded.name, not_finite);
     let stats = Stats {
+        frame: None,
         scene: loaded.name.clone(),
         output: target.to_string(),
         width,
@@ -366,15 +374,20 @@ fn job(args: &Args, loaded: Loaded, target: Target) -> Result<Job, Failure> {
         }
         check_place(path)?;
     }
-    let format = match (args.format, &target) {
-        (Some(format), _) => format,
-        (None, Target::Stdout) => Format::default(),
+    let format = format_of(args, &target).map_err(|failure| failure.of(&loaded.name))?;
+    Ok(Job { loaded, target, format })
+}
+
+/// How the picture is written.
+fn format_of(args: &Args, target: &Target) -> Result<Format, Failure> {
+    match (args.format, target) {
+        (Some(format), _) => Ok(format),
+        (None, Target::Stdout) => Ok(Format::default()),
         (None, Target::File(path)) => format_by_ending(path).map_err(|mut failure| {
             failure.message += "\n  help: --format p6, p3 or png writes that under any name";
-            failure.of(&loaded.name)
-        })?,
-    };
-    Ok(Job { loaded, target, format })
+            failure
+        }),
+    }
 }
 
 /// Says what the device could not do.
