@@ -5,9 +5,10 @@ use std::borrow::Cow;
 use glam::DVec3;
 use rayon::prelude::*;
 
+use crate::accel::KeptLists;
 use crate::brightness::Scalar;
 use crate::geometry::{COMMON_EXTENT, extent, reciprocal_power_of_two};
-use crate::scene::{Scene, Window};
+use crate::scene::{Light, Scene, Window};
 use crate::settings::{Secondary, Settings};
 
 /// A scene under settings, with the eye at the origin and in the units of kernels, and what it was made of.
@@ -21,6 +22,7 @@ pub struct ViewedScene<'a> {
     file_scene: &'a Scene,
     file_settings: Settings,
     units: Units,
+    kept: Option<&'a KeptLists>,
 }
 
 impl Scene {
@@ -36,7 +38,19 @@ impl Scene {
             file_scene: self,
             file_settings: *settings,
             units,
+            kept: None,
         }
+    }
+
+    /// The same, where other eyes have looked at the same spheres and lights and left their lists in `kept`.
+    #[doc(hidden)]
+    pub fn viewed_again<'a>(&'a self, settings: &Settings, kept: &'a KeptLists) -> ViewedScene<'a> {
+        let viewed = self.viewed(settings);
+        // A light that comes nearer along its direction is elsewhere for each eye.
+        let stays =
+            |light: &Light| extent(light.position - settings.view.eye) <= viewed.units.farthest / viewed.units.factor;
+        let kept = self.lights.iter().all(stays).then_some(kept);
+        ViewedScene { kept, ..viewed }
     }
 }
 
@@ -59,6 +73,11 @@ impl<'a> ViewedScene<'a> {
     /// Likewise, for whoever needs no more: where the other scene is a copy, it goes.
     pub fn into_file(self) -> (&'a Scene, Settings) {
         (self.file_scene, self.file_settings)
+    }
+
+    /// What lists other eyes have left.
+    pub(crate) fn kept_lists(&self) -> Option<&'a KeptLists> {
+        self.kept
     }
 
     /// The power of two by which the file's coordinates are multiplied.

@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use super::{Args, Job, frame_name};
+use crate::accel::KeptLists;
 use crate::cli::failure::{Failure, SCENE};
 use crate::cli::input::{Loaded, print_doubts};
 use crate::cli::render::explain;
@@ -43,6 +44,8 @@ pub(super) struct Source {
     size: [u32; 2],
     /// The scene file's own size.
     file_size: [u32; 2],
+    /// What its frames share.
+    kept: KeptLists,
     /// Reading and parsing; of the first frame that shows it.
     parse_time: Duration,
 }
@@ -53,7 +56,7 @@ impl Source {
         let Loaded { name, scene, parse_time, .. } = loaded;
         let file_size = [scene.width, scene.height];
         let size = size.map_or(file_size, <[u32; 2]>::from);
-        Self { name, window: scene.window, size, file_size, scene, parse_time }
+        Self { name, window: scene.window, size, file_size, scene, kept: KeptLists::default(), parse_time }
     }
 }
 
@@ -116,7 +119,7 @@ impl<'a> Preparer<'a> {
                 self.doubts = found;
             }
         }
-        let viewed = scene.viewed(&settings);
+        let viewed = scene.viewed_again(&settings, &source.kept);
         let effects = args.picture.renderable_effects(&viewed)?;
         let selection = args.device.selection(gpu, &viewed, &effects);
         if (args.explain || args.verbose) && self.explained.as_ref() != Some(&effects) {
