@@ -129,7 +129,7 @@ pub use compare::{Difference, Explanation};
 pub use film::Picture;
 pub use glam::DVec3;
 pub use precision::Tier;
-pub use renderer::{Error, Renderer};
+pub use renderer::{Error, Renderer, Views};
 pub use scene::{Light, Scene, Sphere, Window};
 pub use settings::Settings;
 pub use verify::Verify;

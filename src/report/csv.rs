@@ -33,14 +33,14 @@ pub(crate) fn cells(line: &[u8]) -> Result<Vec<Cell>, usize> {
     let mut at = 0;
     loop {
         at += line[at..].iter().take_while(|byte| matches!(byte, b' ' | b'\t')).count();
-        let (start, mut text, mut is_quoted) = (at, Vec::new(), false);
+        let (start, mut text, mut is_quoted, mut quoted) = (at, Vec::new(), false, 0);
         while let Some(&byte) = line.get(at).filter(|&&byte| is_quoted || byte != b',') {
             match byte {
                 b'"' if is_quoted && line.get(at + 1) == Some(&b'"') => {
                     text.push(b'"');
                     at += 1;
                 }
-                b'"' if is_quoted || at == start => is_quoted = !is_quoted,
+                b'"' if is_quoted || at == start => (is_quoted, quoted) = (!is_quoted, text.len()),
                 byte => text.push(byte),
             }
             at += 1;
@@ -49,9 +49,7 @@ pub(crate) fn cells(line: &[u8]) -> Result<Vec<Cell>, usize> {
             return Err(start);
         }
         let end = start + line[start..at].trim_ascii_end().len();
-        if line[start..end].last() != Some(&b'"') {
-            text.truncate(text.trim_ascii_end().len());
-        }
+        text.truncate(text.trim_ascii_end().len().max(quoted));
         cells.push(Cell { range: start..end, text });
         if at == line.len() {
             return Ok(cells);
@@ -77,7 +75,7 @@ mod tests {
 
     #[test]
     fn blanks_around_fields_do_not_count() {
-        assert_eq!(texts(" 1 ,\t2,\" 3 \",, "), ["1", "2", " 3 ", "", ""]);
+        assert_eq!(texts(" 1 ,\t2,\" 3 \" ,, "), ["1", "2", " 3 ", "", ""]);
         assert_eq!(cells(b"1, 22 ,3").unwrap()[1].range, 3..5);
     }
 

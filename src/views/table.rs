@@ -34,10 +34,12 @@ const SCENE: usize = 16;
 pub fn table(name: &str, folder: &Path, text: &[u8], given: &Placement, color: bool) -> Result<Vec<Frame>, String> {
     let mut reader = Reader { folder, given, collector: Collector::default(), columns: None, frames: Vec::new() };
     let mut rest = text.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(text);
-    let mut line = Line { number: 0, bytes: b"" };
+    let mut line = Line { number: 1, bytes: b"" };
+    let mut number = 0;
     while !rest.is_empty() {
         let (bytes, length) = first_line(rest);
-        line = Line { number: line.number + 1, bytes };
+        number += 1;
+        line = Line { number, bytes };
         reader.line(line);
         rest = &rest[length..];
     }
