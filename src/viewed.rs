@@ -108,7 +108,7 @@ fn moved(scene: &Scene, eye: DVec3) -> Cow<'_, Scene> {
         return Cow::Borrowed(scene);
     }
     let mut scene = scene.clone();
-    scene.spheres.iter_mut().for_each(|sphere| sphere.center -= eye);
+    scene.spheres.par_iter_mut().for_each(|sphere| sphere.center -= eye);
     scene.lights.iter_mut().for_each(|light| light.position -= eye);
     Cow::Owned(scene)
 }

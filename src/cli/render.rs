@@ -195,6 +195,11 @@ impl Args {
         self.scenes.first().map(PathBuf::as_path)
     }
 
+    /// How progress is shown.
+    fn progress_style(&self) -> Style {
+        if self.quiet { Style::None } else { self.progress }
+    }
+
     /// What of this scene can be done before the device is open.
     fn ahead(&self, scene: &Scene, settings: &Settings) -> Option<Ahead> {
         if !self.device.uses_vulkan() {
@@ -248,8 +253,7 @@ fn render_one(
 
     let mut writer = PictureWriter::create(&target, format, width, height)?;
     let mut write_time = Duration::ZERO;
-    let style = if args.quiet { Style::None } else { args.progress };
-    let mut progress = Progress::of_rows(style, &loaded.name, height);
+    let mut progress = Progress::of_rows(args.progress_style(), &loaded.name, height);
     let mut sampled = None;
     let not_finite = match &mut renderer {
         Renderer::InPart(engine, choice) => {

@@ -90,7 +90,7 @@ fn frames_are_the_pictures_of_single_runs_at_every_tier() {
     let device = |tier| Backend::Device(&gpu, tier);
     let certified = Backend::Certified(&gpu, Tier::Fast);
     let backends = [device(Tier::Fast), device(Tier::Robust), device(Tier::Double), certified, Backend::Reference];
-    for name in ["basic/ellipsoid.txt", "effects/refraction.txt", "show/showcase.txt"] {
+    for name in ["effects/refraction.txt", "show/showcase.txt"] {
         let mut scene = scene(&root().join("scenes").join(name));
         (scene.width, scene.height) = (56, 40);
         for backend in backends {

@@ -7,6 +7,7 @@ mod pattern;
 mod prepare;
 mod write;
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
@@ -35,8 +36,9 @@ use crate::words::count;
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Camera")]
 pub(super) struct Options {
-    /// Render a frame for each row of a CSV file with a header of these names: eye_x, eye_y, eye_z, at_x, at_y, at_z, up_x, up_y, up_z,
-    /// width, height, near, left, right, bottom, top, scene; an empty cell is as in the scene or the options
+    /// Render a frame for each row of a CSV file, whose header has some of the names
+    /// `eye_x,eye_y,eye_z,at_x,at_y,at_z,up_x,up_y,up_z,width,height,near,left,right,bottom,top,scene`; an empty cell is as in the
+    /// options or the scene
     #[arg(long, value_name = "FILE", group = "many")]
     views: Option<PathBuf>,
     /// Render N frames once around the middle of the spheres, or --look-at
@@ -112,7 +114,7 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
     let (loaded, frames, ahead) = read?;
     let opened = Opened { gpu: gpu?.map(|gpu| gpu.having(ahead).keeping_kernels(USUAL_KERNELS)), time: open_time };
 
-    let scenes = frames.iter().filter_map(|(_, frame)| frame.scene.as_ref());
+    let scenes: BTreeSet<_> = frames.iter().filter_map(|(_, frame)| frame.scene.as_ref()).collect();
     let mut guard = Guard::new(args.scenes.iter().chain(&args.views.views).chain(scenes));
     if let Some(path) = args.stats_json.as_deref().filter(|path| *path != Path::new("-")) {
         check_place(path)?;

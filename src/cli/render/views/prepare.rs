@@ -108,12 +108,8 @@ impl<'a> Preparer<'a> {
             scene.check().map_err(|error| Failure::new(SCENE, error.to_string()))?;
         }
         if !args.quiet {
-            // Said once for all frames that there is the same to say of.
-            let (width, height) = (scene.width, scene.height);
-            [scene.width, scene.height] = source.file_size;
-            let size = ([width, height] != source.file_size).then_some((width, height));
-            let found = doubts(scene, &settings, size);
-            (scene.width, scene.height) = (width, height);
+            // Said once for all frames of which there is the same to say.
+            let found = doubts_of(scene, source.file_size, &settings);
             if found != self.doubts {
                 print_doubts(&format!("{name}: {}", frame_name(number)), &found);
                 self.doubts = found;
@@ -158,6 +154,15 @@ impl<'a> Preparer<'a> {
         });
         Ok(Prepared { target, format, engine, stats, start })
     }
+}
+
+/// What can hardly be meant, where the scene's file says another size.
+fn doubts_of(scene: &mut Scene, file_size: [u32; 2], settings: &Settings) -> Vec<String> {
+    let size = [scene.width, scene.height];
+    [scene.width, scene.height] = file_size;
+    let found = doubts(scene, settings, (size != file_size).then_some(size.into()));
+    [scene.width, scene.height] = size;
+    found
 }
 
 /// The scene in this file, which is read unless it was that of the last frame with another.

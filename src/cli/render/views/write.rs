@@ -8,7 +8,7 @@ use super::{Args, frame_name};
 use crate::cli::failure::{DEVICE_LOST, Failure, OK, OUTPUT};
 use crate::cli::guard::Guard;
 use crate::cli::output::{err, errln};
-use crate::cli::progress::{Progress, Style};
+use crate::cli::progress::Progress;
 use crate::cli::render::{say_cut, say_not_finite};
 use crate::cli::stats::{Stats, peak_memory_mib};
 use crate::engine::ms;
@@ -56,8 +56,7 @@ struct File {
 impl<'a> Writer<'a> {
     /// Sets `stop` where further frames would fail as well.
     pub(super) fn new(args: &'a Args, guard: Guard, name: &str, total: u32, stop: &'a AtomicBool) -> Self {
-        let style = if args.quiet { Style::None } else { args.progress };
-        let progress = Progress::of_frames(style, name, total);
+        let progress = Progress::of_frames(args.progress_style(), name, total);
         let (name, file, stats, last) = (name.to_owned(), None, Vec::new(), String::new());
         Self { args, guard, name, total, done: 0, written: 0, file, progress, stats, last, code: OK, stop }
     }
