@@ -7,6 +7,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use glam::DVec3;
+use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 
 use crate::scene::{Light, Scene, Sphere};
@@ -316,8 +317,9 @@ struct Needs<'a> {
 
 impl<'a> Needs<'a> {
     fn new(scene: &'a Scene, settings: &'a Settings) -> Self {
-        let first_cut = scene.spheres.iter().position(|sphere| !beyond_image_plane(scene, settings, sphere));
-        let glass = scene.spheres.iter().position(|sphere| sphere.kt != 0.0).filter(|_| settings.max_depth > 0);
+        let first_cut = scene.spheres.par_iter().position_first(|sphere| !beyond_image_plane(scene, settings, sphere));
+        let glass =
+            scene.spheres.par_iter().position_first(|sphere| sphere.kt != 0.0).filter(|_| settings.max_depth > 0);
         Self { scene, settings, first_cut, glass }
     }
 

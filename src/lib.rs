@@ -126,13 +126,15 @@ pub mod viewed;
 #[cfg(feature = "view")]
 #[doc(hidden)]
 pub mod viewer;
+#[doc(hidden)]
+pub mod views;
 mod words;
 
 pub use compare::{Difference, Explanation};
 pub use film::Picture;
 pub use glam::DVec3;
 pub use precision::Tier;
-pub use renderer::{Error, Renderer};
+pub use renderer::{Error, Renderer, Views};
 pub use scene::{Light, Scene, Sphere, Window};
 pub use settings::Settings;
 pub use verify::Verify;

@@ -1,5 +1,7 @@
 //! The front door: a device that renders scenes, and the reference that its pictures are held against.
 
+mod views;
+
 use std::fmt;
 use std::sync::Arc;
 
@@ -16,11 +18,12 @@ use crate::scene::{Invalid, Scene, SceneError};
 use crate::settings::Settings;
 use crate::verify::Verify;
 use crate::viewed::ViewedScene;
+pub use views::Views;
 
 /// What renders: a Vulkan device, or the CPU reference.
 ///
-/// It keeps the kernels that it has compiled, so one renderer for many pictures is faster than many. Clones share the device and
-/// its kernels, and may render at the same time.
+/// It keeps the kernels that it has compiled, so one renderer for many pictures is faster than many; [`Renderer::views`] also keeps what
+/// it has prepared of a scene. Clones share the device and its kernels, and may render at the same time.
 ///
 /// ```
 /// use trueray::{Error, Renderer, Scene, Settings};
@@ -113,9 +116,14 @@ impl Renderer {
     /// the reference's by more than rounding explains.
     pub fn render(&self, scene: &Scene, settings: &Settings) -> Result<Picture, Error> {
         let (viewed, effects) = renderable(scene, settings)?;
-        let backend = self.backend(&viewed, &effects);
+        self.picture(viewed, &effects)
+    }
+
+    fn picture(&self, viewed: ViewedScene, effects: &Effects) -> Result<Picture, Error> {
+        let backend = self.backend(&viewed, effects);
+        let (scene, _) = viewed.in_file();
         let verify = self.verify.unwrap_or_else(|| Verify::usual(scene));
-        let mut engine = Engine::verified(backend, viewed, &effects, &Options::default(), verify)?;
+        let mut engine = Engine::verified(backend, viewed, effects, &Options::default(), verify)?;
         let (rgb, _) = render_picture(&mut engine)?;
         Ok(Picture::new(scene.width, scene.height, rgb)?)
     }
@@ -157,10 +165,16 @@ fn renderable<'a>(scene: &'a Scene, settings: &Settings) -> Result<(ViewedScene<
     scene.check()?;
     check_room(scene)?;
     let viewed = scene.viewed(settings);
-    let effects = Effects::of(&viewed);
-    match effects.too_deep(scene).or_else(|| limits::problem(&viewed, &effects)) {
+    let effects = effects_of(&viewed)?;
+    Ok((viewed, effects))
+}
+
+/// What `viewed` calls for, if it has a picture.
+fn effects_of(viewed: &ViewedScene) -> Result<Effects, Error> {
+    let effects = Effects::of(viewed);
+    match effects.too_deep(viewed.scene()).or_else(|| limits::problem(viewed, &effects)) {
         Some(why) => Err(Error::Unrenderable(why)),
-        None => Ok((viewed, effects)),
+        None => Ok(effects),
     }
 }
 

@@ -5,9 +5,9 @@
 use std::num::NonZero;
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Sender, channel};
+use std::sync::mpsc::{Sender, channel, sync_channel};
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::thread::{Builder, available_parallelism};
+use std::thread::{Builder, Scope, available_parallelism};
 
 use rayon::{ThreadBuilder, ThreadPoolBuilder};
 
@@ -96,6 +96,44 @@ pub(crate) fn at_once<A: Send, B>(there: impl FnOnce() -> A + Send, here: impl F
     })
 }
 
+/// Passes all that `first` makes through `second`, and what that hands on to `third`, in order. Each works on a thread of its own,
+/// `second` on this one, and waits once it is an item ahead; for whom there is no thread, this one works.
+pub(crate) fn in_stages<A: Send, B: Send>(
+    first: impl FnMut() -> Option<A> + Send,
+    mut second: impl FnMut(A, &mut dyn FnMut(B)),
+    third: impl FnMut(B) + Send,
+) {
+    let (first, third) = (&Mutex::new(first), &Mutex::new(third));
+    std::thread::scope(|scope| {
+        let (to_second, from_first) = sync_channel(0);
+        let (to_third, from_second) = sync_channel(1);
+        let has_first = starts(scope, move || {
+            let mut first = lock(first);
+            while let Some(item) = first()
+                && to_second.send(item).is_ok()
+            {}
+        });
+        let has_third = starts(scope, move || from_second.into_iter().for_each(|item| lock(third)(item)));
+        let next = || if has_first { from_first.recv().ok() } else { lock(first)() };
+        let mut hand_on = |item| {
+            if has_third {
+                // Where the other thread has panicked, so does this one in the end.
+                let _ = to_third.send(item);
+            } else {
+                lock(third)(item);
+            }
+        };
+        while let Some(item) = next() {
+            second(item, &mut hand_on);
+        }
+    });
+}
+
+/// Whether there is a thread for `work`.
+fn starts<'scope>(scope: &'scope Scope<'scope, '_>, work: impl FnOnce() + Send + 'scope) -> bool {
+    !is_alone() && Builder::new().spawn_scoped(scope, work).is_ok()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -120,5 +158,20 @@ mod tests {
     #[test]
     fn a_panic_there_goes_on_here() {
         assert!(std::panic::catch_unwind(|| at_once(|| panic!("on purpose"), || ())).is_err());
+    }
+
+    #[test]
+    fn stages_keep_the_order_with_threads_or_without() {
+        for alone in [false, true] {
+            let before = ALONE.swap(alone, Ordering::Relaxed);
+            let (mut numbers, mut ends) = (1..=100, Vec::new());
+            let twice = |number: i32, hand_on: &mut dyn FnMut(i32)| {
+                hand_on(number);
+                hand_on(-number);
+            };
+            in_stages(|| numbers.next(), twice, |number| ends.push(number));
+            ALONE.store(before, Ordering::Relaxed);
+            assert_eq!(ends, (1..=100).flat_map(|number| [number, -number]).collect::<Vec<_>>());
+        }
     }
 }

@@ -5,11 +5,12 @@ use std::borrow::Cow;
 use glam::DVec3;
 use rayon::prelude::*;
 
+use crate::accel::KeptLists;
 use crate::area::Area;
 use crate::brightness::Scalar;
 use crate::geometry::{COMMON_EXTENT, extent, reciprocal_power_of_two};
 use crate::misuse::Misuse;
-use crate::scene::{Scene, Window};
+use crate::scene::{Light, Scene, Window};
 use crate::settings::{Secondary, Settings};
 
 /// A scene under settings, with the eye at the origin and in the units of kernels, and what it was made of.
@@ -24,6 +25,7 @@ pub struct ViewedScene<'a> {
     file_settings: Settings,
     units: Units,
     area: Area,
+    kept: Option<&'a KeptLists>,
 }
 
 impl Scene {
@@ -40,7 +42,19 @@ impl Scene {
             file_settings: *settings,
             units,
             area: Area::whole((self.width, self.height)),
+            kept: None,
         }
+    }
+
+    /// The same, where other eyes have looked at the same spheres and lights and left their lists in `kept`.
+    #[doc(hidden)]
+    pub fn viewed_again<'a>(&'a self, settings: &Settings, kept: &'a KeptLists) -> ViewedScene<'a> {
+        let viewed = self.viewed(settings);
+        // A light that comes nearer along its direction is elsewhere for each eye.
+        let stays =
+            |light: &Light| extent(light.position - settings.view.eye) <= viewed.units.farthest / viewed.units.factor;
+        let kept = self.lights.iter().all(stays).then_some(kept);
+        ViewedScene { kept, ..viewed }
     }
 }
 
@@ -85,6 +99,11 @@ impl<'a> ViewedScene<'a> {
         (self.file_scene, self.file_settings)
     }
 
+    /// What lists other eyes have left.
+    pub(crate) fn kept_lists(&self) -> Option<&'a KeptLists> {
+        self.kept
+    }
+
     /// The power of two by which the file's coordinates are multiplied.
     pub fn factor(&self) -> f64 {
         self.units.factor
@@ -113,7 +132,7 @@ fn moved(scene: &Scene, eye: DVec3) -> Cow<'_, Scene> {
         return Cow::Borrowed(scene);
     }
     let mut scene = scene.clone();
-    scene.spheres.iter_mut().for_each(|sphere| sphere.center -= eye);
+    scene.spheres.par_iter_mut().for_each(|sphere| sphere.center -= eye);
     scene.lights.iter_mut().for_each(|light| light.position -= eye);
     Cow::Owned(scene)
 }

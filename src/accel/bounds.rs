@@ -3,6 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::kept::{ROOM, moved_at_most};
 use crate::scene::Sphere;
 use crate::viewed::ViewedScene;
 
@@ -63,7 +64,10 @@ pub(super) struct Enclosure<'a> {
     /// The greatest coordinate of any point of a sphere.
     pub(super) magnitude: f64,
     /// Likewise, or of a light.
-    reach: f64,
+    pub(super) reach: f64,
+    /// How far what is made for it may be moved beside its place.
+    pub(super) play: f64,
+    rounding: Rounding,
 }
 
 impl<'a> Enclosure<'a> {
@@ -75,7 +79,17 @@ impl<'a> Enclosure<'a> {
         let reach = scene.lights.iter().map(|light| extent(light.position)).fold(magnitude, f64::max);
         // Of the file's numbers they take what the eye at the origin makes of them.
         let error = ERROR_STEPS * rounding.tests * magnitude + 2.0 * viewed.moved_by();
-        Self { spheres: &scene.spheres, true_axes, error, magnitude, reach }
+        Self { spheres: &scene.spheres, true_axes, error, magnitude, reach, play: 0.0, rounding }
+    }
+
+    /// The same for lists that [`super::KeptLists`] gives to other eyes, too.
+    pub(super) fn for_other_eyes(mut self, viewed: &ViewedScene) -> Self {
+        let moved = viewed.moved_by() + moved_at_most(viewed.moved_by(), self.magnitude);
+        self.magnitude *= ROOM;
+        self.reach *= ROOM;
+        self.error = ERROR_STEPS * self.rounding.tests * self.magnitude + 2.0 * moved;
+        self.play = 4.0 * f64::from(f32::EPSILON) * self.magnitude;
+        self
     }
 
     /// How far a ray may lie beside where a renderer's tests take it: half of what is taken for their rounding.

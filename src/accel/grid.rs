@@ -53,7 +53,7 @@ impl Grid {
         let small = (0..enclosure.len()).into_par_iter().filter(is_small).map(|sphere| enclosure.solid(sphere));
         let ends = small.map(|s| (s.center - s.semi_axes, s.center + s.semi_axes));
         let (low, high) = ends.reduce_with(|(a, b), (c, d)| (a.min(c), b.max(d))).unwrap_or_default();
-        let low = DVec3::from_array(low.to_array().map(below));
+        let (low, high) = (DVec3::from_array(low.to_array().map(below)), high + DVec3::splat(enclosure.play));
         let size = (high - low).max(DVec3::splat(1e-30));
         // Cells as nearly cubes as the box allows.
         let wanted = cells_per_sphere * (enclosure.len() - large.len()).max(1) as f64;
@@ -98,7 +98,7 @@ impl Grid {
 }
 
 /// A number of `f32` below `x`, and none that devices may take for 0.
-fn below(x: f64) -> f64 {
+pub(super) fn below(x: f64) -> f64 {
     let below = (x as f32).next_down();
     f64::from(if below.is_subnormal() { below.signum().min(0.0) * f32::MIN_POSITIVE } else { below })
 }

@@ -1,5 +1,7 @@
 //! Lists of spheres, one for each cell of whatever space is cut into cells.
 
+use std::sync::Arc;
+
 use bytemuck::{Zeroable, zeroed_vec};
 use rayon::prelude::*;
 
@@ -40,9 +42,9 @@ const BUCKETS: usize = 128;
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Lists {
     /// Where each cell's list begins in `entries`, and at last where the last one ends.
-    pub offsets: Vec<u32>,
+    pub offsets: Arc<Vec<u32>>,
     /// Sphere indices.
-    pub entries: Vec<u32>,
+    pub entries: Arc<Vec<u32>>,
 }
 
 impl Lists {
@@ -89,12 +91,9 @@ impl Lists {
 
         let total = |bucket: usize| counts.iter().map(|counts| counts[bucket]).fold(Count::default(), Count::plus);
         let totals: Vec<Count> = (0..buckets.count).map(total).collect();
-        let mut lists = Self {
-            offsets: vec![0; binning.cells() + 1],
-            entries: vec![0; totals.iter().map(|total| total.cells).sum()],
-        };
-        let (mut offsets, mut entries, mut runs) =
-            (&mut lists.offsets[1..], lists.entries.as_mut_slice(), runs.as_slice());
+        let mut all_offsets = vec![0; binning.cells() + 1];
+        let mut all_entries = vec![0; totals.iter().map(|total| total.cells).sum()];
+        let (mut offsets, mut entries, mut runs) = (&mut all_offsets[1..], all_entries.as_mut_slice(), runs.as_slice());
         let mut tasks = Vec::with_capacity(buckets.count);
         let mut base = 0;
         for total in totals {
@@ -106,7 +105,7 @@ impl Lists {
             base += total.cells as u32;
         }
         tasks.into_par_iter().for_each(|(runs, base, ends, entries)| fill(runs, base, ends, entries));
-        lists
+        Self { offsets: Arc::new(all_offsets), entries: Arc::new(all_entries) }
     }
 }
 

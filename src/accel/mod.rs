@@ -7,6 +7,8 @@
 mod bounds;
 mod density;
 mod grid;
+mod kept;
+mod leaving;
 mod light_buffer;
 mod lists;
 mod screen;
@@ -17,10 +19,12 @@ use crate::camera::Camera;
 use crate::effects::{Effect, EffectSet};
 use crate::viewed::ViewedScene;
 use bounds::Enclosure;
+use leaving::{Leaving, grid_in};
 
 pub use bounds::Rounding;
 pub use density::Density;
 pub use grid::{Grid, MAX_LARGE, WALK_SLACK};
+pub use kept::KeptLists;
 pub use light_buffer::{Face, LightBuffer, REACH};
 pub use lists::Lists;
 pub use screen::{Cover, ScreenLists};
@@ -60,32 +64,19 @@ impl Acceleration {
         let (scene, camera) = (viewed.scene(), Camera::new(viewed));
         let enclosure = Enclosure::new(viewed, effects.has(Effect::Ellipsoids), rounding);
         let lights: Vec<DVec3> = scene.lights.iter().map(|light| light.position).collect();
-        let lit = effects.has(Effect::Shadows);
-        let spheres = scene.spheres.len();
         let (middle, extent) = enclosure.ball();
-        let for_lights = enclosure.with_room(LIGHT_ROOM, rounding);
-        let entries = density.entries_of_a_light(spheres, lights.len());
-        Self {
-            screen: ScreenLists::new(&enclosure, &camera, density.longest_tile),
-            lights: LightBuffer::new(&for_lights, if lit { &lights } else { &[] }, entries, rounding),
-            grid: Self::grid_in(&enclosure, effects, rounding, density),
-            allowance: enclosure.with_room(GRID_ROOM, rounding).allowance(),
-            light_allowance: for_lights.allowance(),
-            middle,
-            extent,
-        }
+        let make = |enclosure: &Enclosure| Leaving::new(enclosure, &lights, effects, rounding, density);
+        let Leaving { lights, grid, allowance, light_allowance } = match viewed.kept_lists() {
+            Some(kept) => kept.of(viewed, &enclosure, (effects, rounding, *density, viewed.factor()), make),
+            None => make(&enclosure),
+        };
+        let screen = ScreenLists::new(&enclosure, &camera, density.longest_tile);
+        Self { screen, lights, grid, allowance, light_allowance, middle, extent }
     }
 
     /// The grid alone.
     pub fn grid_of(viewed: &ViewedScene, effects: EffectSet, rounding: Rounding, density: &Density) -> Option<Grid> {
         let enclosure = Enclosure::new(viewed, effects.has(Effect::Ellipsoids), rounding);
-        Self::grid_in(&enclosure, effects, rounding, density)
-    }
-
-    fn grid_in(enclosure: &Enclosure, effects: EffectSet, rounding: Rounding, density: &Density) -> Option<Grid> {
-        let leave_surfaces = effects.has(Effect::Reflections) || effects.has(Effect::Refraction);
-        leave_surfaces.then(|| {
-            Grid::new(&enclosure.with_room(GRID_ROOM, rounding), density.cells_per_sphere(enclosure.len()), rounding)
-        })
+        grid_in(&enclosure, effects, rounding, density)
     }
 }

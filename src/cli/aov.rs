@@ -84,6 +84,11 @@ enum AovFormat {
 }
 
 impl AovOptions {
+    /// Whether any values are asked for.
+    pub(super) fn is_given(&self) -> bool {
+        !self.aov.is_empty()
+    }
+
     /// Refuses one file for the values of several scenes, and one that the run has another use for.
     pub(super) fn check_file(&self, scenes: usize, guard: &mut Guard) -> Result<(), Failure> {
         if scenes > 1 && self.aov_file.is_some() {

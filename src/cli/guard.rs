@@ -1,5 +1,6 @@
 //! No input of a run is an output of it, and no two outputs are one file, whatever they are called.
 
+use std::collections::{HashMap, HashSet};
 use std::ffi::OsString;
 use std::fs::{self, Metadata};
 use std::io::ErrorKind;
@@ -13,12 +14,12 @@ use crate::atomic::folder_of;
 #[derive(Debug, Default)]
 pub(super) struct Guard {
     inputs: Vec<(Identity, PathBuf)>,
-    outputs: Vec<(Identity, String)>,
-    written: Vec<Identity>,
+    outputs: HashMap<Identity, String>,
+    written: HashSet<Identity>,
 }
 
 /// What makes two names one file.
-#[derive(Debug, PartialEq)]
+#[derive(Debug, PartialEq, Eq, Hash)]
 enum Identity {
     File(Id),
     /// A name in a folder that has no such file yet.
@@ -51,10 +52,10 @@ impl Guard {
             };
             return refused(format!("an input of this run{alias}"));
         }
-        if let Some((_, other)) = self.outputs.iter().find(|(other, _)| *other == identity) {
+        if let Some(other) = self.outputs.get(&identity) {
             return refused(format!("which {other} writes"));
         }
-        self.outputs.push((identity, what.to_owned()));
+        self.outputs.insert(identity, what.to_owned());
         Ok(())
     }
 

@@ -11,10 +11,12 @@ use crate::limits;
 use crate::precision::{self, Selection, Tier};
 use crate::scene::{Scene, resolution};
 use crate::settings::{Convention, Quantize, SampleOffset, Secondary, Settings, Specular};
+#[cfg(feature = "view")]
 use crate::view::View;
 use crate::viewed::ViewedScene;
 #[cfg(feature = "view")]
 use crate::viewer::{FlightScale, Pose, ViewState};
+use crate::views::Placement;
 
 /// What decides the picture besides the scene.
 #[derive(Debug, Args)]
@@ -67,12 +69,17 @@ struct CameraOptions {
 }
 
 impl PictureOptions {
+    /// Where the eye is.
+    pub(super) fn placement(&self) -> Placement {
+        let CameraOptions { eye, look_at, up } = self.camera;
+        Placement { eye, look_at, up }
+    }
+
     /// Fails where the camera options define no view.
     pub(super) fn settings(&self) -> Result<Settings, Failure> {
         let base = self.convention.settings();
-        let CameraOptions { eye, look_at, up } = self.camera;
         Ok(Settings {
-            view: View::new(eye, look_at, up).map_err(|error| Failure::new(USAGE, error.to_string()))?,
+            view: self.placement().view().map_err(|error| Failure::new(USAGE, error.to_string()))?,
             sampling: self.sampling.unwrap_or(base.sampling),
             quantize: self.quantize.unwrap_or(base.quantize),
             secondary: self.secondary_epsilon.unwrap_or(base.secondary),

@@ -59,9 +59,14 @@ impl FromStr for Tile {
 }
 
 impl PartOptions {
+    /// Whether no more than a part is rendered.
+    pub(super) fn is_part(&self) -> bool {
+        self.crop.is_some() || self.tile.is_some()
+    }
+
     /// Refuses what has no place for a part.
     pub(super) fn check(&self, scenes: usize, output: Option<&Path>) -> Result<(), Failure> {
-        let is_part = self.crop.is_some() || self.tile.is_some();
+        let is_part = self.is_part();
         let why = match output {
             _ if is_part && scenes > 1 => "--crop and --tile take one scene",
             None if is_part => "--crop and --tile need -o: a part is not the picture that OUTPUT names",
@@ -91,7 +96,7 @@ impl PartOptions {
         (gpu, selection): (Option<&Gpu>, &Selection),
         format: Format,
     ) -> Result<Option<Note>, Failure> {
-        if self.crop.is_none() && self.tile.is_none() && !self.resume {
+        if !self.is_part() && !self.resume {
             return Ok(None);
         }
         if format == Format::P3 {

@@ -40,6 +40,8 @@ pub(super) struct Progress {
     name: String,
     /// Rows of the picture, where it is one.
     rows: Option<u32>,
+    /// Frames, where these are many pictures.
+    frames: Option<u32>,
     start: Instant,
     last_line: Instant,
     bar: Option<ProgressBar>,
@@ -54,6 +56,10 @@ struct Event<'a> {
     rows_done: Option<u32>,
     #[serde(skip_serializing_if = "Option::is_none")]
     rows: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    frames_done: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    frames: Option<u32>,
     seconds: f64,
     seconds_left: Option<f64>,
     finished: bool,
@@ -68,13 +74,20 @@ impl Progress {
             style => style,
         };
         let now = Instant::now();
-        Self { style, name: name.to_owned(), rows: None, start: now, last_line: now, bar: None }
+        Self { style, name: name.to_owned(), rows: None, frames: None, start: now, last_line: now, bar: None }
     }
 
     /// Of a picture with so many rows.
     pub(super) fn of_rows(style: Style, name: &str, rows: u32) -> Self {
         let mut progress = Self::new(style, name);
         progress.rows = Some(rows);
+        progress
+    }
+
+    /// Of so many frames.
+    pub(super) fn of_frames(style: Style, name: &str, frames: u32) -> Self {
+        let mut progress = Self::new(style, name);
+        progress.frames = Some(frames);
         progress
     }
 
@@ -110,14 +123,18 @@ impl Progress {
         let seconds = self.start.elapsed().as_secs_f64();
         let seconds_left = (part > 0.0).then(|| seconds * (1.0 / part - 1.0));
         let (name, percent) = (&self.name, part * 100.0);
+        let done = |all: u32| (part * f64::from(all)).round() as u32;
+        let frames = self.frames.map_or(String::new(), |frames| format!(" ({} of {frames} frames)", done(frames)));
         match (self.style, seconds_left) {
             (Style::Json, _) => {
                 let tenths = |x: f64| (x * 10.0).round() / 10.0;
                 let event = Event {
                     scene: name,
                     percent: tenths(percent),
-                    rows_done: self.rows.map(|rows| (part * f64::from(rows)).round() as u32),
+                    rows_done: self.rows.map(done),
                     rows: self.rows,
+                    frames_done: self.frames.map(done),
+                    frames: self.frames,
                     seconds: tenths(seconds),
                     seconds_left: seconds_left.map(tenths),
                     finished,
@@ -132,9 +149,9 @@ impl Progress {
                     None => {}
                 }
             }
-            (Style::Lines, _) if finished => errln!("{name}: 100 %, done in {seconds:.1} s"),
-            (Style::Lines, Some(left)) => errln!("{name}: {percent:.0} %, {left:.0} s left"),
-            (Style::Lines, None) => errln!("{name}: 0 %"),
+            (Style::Lines, _) if finished => errln!("{name}: 100 %{frames}, done in {seconds:.1} s"),
+            (Style::Lines, Some(left)) => errln!("{name}: {percent:.0} %{frames}, {left:.0} s left"),
+            (Style::Lines, None) => errln!("{name}: 0 %{frames}"),
             _ => {}
         }
     }

@@ -1,5 +1,7 @@
 //! `trueray render` and `trueray SCENE.txt`.
 
+mod views;
+
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -39,6 +41,8 @@ pub(super) struct Args {
     scenes: Vec<PathBuf>,
     #[command(flatten)]
     picture: PictureOptions,
+    #[command(flatten)]
+    views: views::Options,
     #[command(flatten)]
     sampling: SamplingOptions,
     #[command(flatten)]
@@ -103,6 +107,9 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
 }
 
 fn render_all(args: &Args) -> Result<u8, Failure> {
+    if args.views.are_given() {
+        return views::run(args);
+    }
     if args.scenes.len() > 1 && args.output.as_deref().is_some_and(|output| !output.is_dir()) {
         return Err(Failure::new(USAGE, "several scenes need a folder for -o, or none"));
     }
@@ -198,6 +205,11 @@ impl Args {
         self.scenes.first().map(PathBuf::as_path)
     }
 
+    /// How progress is shown.
+    fn progress_style(&self) -> Style {
+        if self.quiet { Style::None } else { self.progress }
+    }
+
     /// What of this scene can be done before the device is open.
     fn ahead(&self, scene: &Scene, settings: &Settings) -> Option<Ahead> {
         if !self.device.uses_vulkan() {
@@ -257,8 +269,7 @@ fn render_one(
     let mut writer =
         PictureWriter::with_note(&target, format, (width, height), note.as_ref().map(|note| note.line.as_str()))?;
     let mut write_time = Duration::ZERO;
-    let style = if args.quiet { Style::None } else { args.progress };
-    let mut progress = Progress::of_rows(style, &loaded.name, height);
+    let mut progress = Progress::of_rows(args.progress_style(), &loaded.name, height);
     let mut sampled = None;
     let not_finite = match &mut renderer {
         Renderer::InPart(engine, choice) => {
@@ -298,6 +309,7 @@ fn render_one(
     say_cut(&loaded.name, if args.quiet { 0 } else { cut }, &device_name(gpu));
     say_not_finite(&loaded.name, not_finite);
     let stats = Stats {
+        frame: None,
         scene: loaded.name.clone(),
         output: target.to_string(),
         width,
@@ -385,15 +397,20 @@ fn job(args: &Args, loaded: Loaded, target: Target) -> Result<Job, Failure> {
         }
         check_place(path)?;
     }
-    let format = match (args.format, &target) {
-        (Some(format), _) => format,
-        (None, Target::Stdout) => Format::default(),
+    let format = format_of(args, &target).map_err(|failure| failure.of(&loaded.name))?;
+    Ok(Job { loaded, target, format })
+}
+
+/// How the picture is written.
+fn format_of(args: &Args, target: &Target) -> Result<Format, Failure> {
+    match (args.format, target) {
+        (Some(format), _) => Ok(format),
+        (None, Target::Stdout) => Ok(Format::default()),
         (None, Target::File(path)) => format_by_ending(path).map_err(|mut failure| {
             failure.message += "\n  help: --format p6, p3 or png writes that under any name";
-            failure.of(&loaded.name)
-        })?,
-    };
-    Ok(Job { loaded, target, format })
+            failure
+        }),
+    }
 }
 
 /// Says of how many pixels the device's loops were too short, if of any.

@@ -35,6 +35,9 @@ pub(super) struct Verified {
 /// Everything worth knowing of one rendered picture.
 #[derive(Debug, Serialize)]
 pub(super) struct Stats {
+    /// The number of the frame, from 1, where the picture is one of many views.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub frame: Option<u32>,
     pub scene: String,
     pub output: String,
     pub width: u32,

@@ -11,7 +11,8 @@ use glam::DVec3;
 
 pub(super) use self::keyword::{Field, Keyword};
 use self::keyword::{Guess, MAX_FIELDS, Rule};
-use self::number::{Fault, is_tiny, parse_number};
+pub(crate) use self::number::parse_number;
+use self::number::{Fault, is_tiny};
 use super::diagnostics::{Collector, Detail, Diagnostic, Line, Location, Omitted, Span, Topic, render, shown};
 use super::{Light, MAX_RESOLUTION, Names, Scene, Sphere, Window};
 use crate::words::{count, is_hidden};
@@ -103,7 +104,7 @@ fn length(bytes: &[u8], kind: impl Fn(u8) -> bool) -> usize {
 }
 
 /// The line at the start of `text`, and how many bytes it takes with its end.
-fn first_line(text: &[u8]) -> (&[u8], usize) {
+pub(crate) fn first_line(text: &[u8]) -> (&[u8], usize) {
     match memchr::memchr2(b'\n', b'\r', text) {
         None => (text, text.len()),
         Some(end) => (&text[..end], end + if text[end..].starts_with(b"\r\n") { 2 } else { 1 }),

@@ -177,6 +177,29 @@ test('a click tells what a pixel shows, and the picture is saved as render write
   if (process.env.SCREENSHOTS) await page.screenshot({ path: join(process.env.SCREENSHOTS, 'page.png') });
 });
 
+test('a recorded path is what --views renders', async () => {
+  await settled(page);
+  await page.locator('#record').click();
+  await page.locator('#picture').focus();
+  await page.keyboard.down('KeyW');
+  await page.waitForFunction(() => window.trueray.state.eye[2] < -0.2);
+  await page.keyboard.up('KeyW');
+  await page.waitForTimeout(200);
+  await settled(page, (state) => state.eye[2] < -0.2);
+  const [download] = await Promise.all([page.waitForEvent('download'), page.locator('#record').click()]);
+  assert.equal(download.suggestedFilename(), 'views.csv');
+  const path = await download.path();
+  const frames = readFileSync(path, 'utf8').trim().split('\n').length - 1;
+  assert.ok(frames > 1, `${frames} frames`);
+  execFileSync(program, ['render', '-q', '--views', path, 'scene.txt', '-o', 'f%d.ppm'],
+    { cwd: place.path, env: { ...process.env, NODEVICE_SELECT: '1' } });
+  execFileSync(program, ['render', '-q', 'scene.txt', '-o', 'first.ppm'],
+    { cwd: place.path, env: { ...process.env, NODEVICE_SELECT: '1' } });
+  assert.ok(readFileSync(join(place.path, 'f1.ppm')).equals(readFileSync(join(place.path, 'first.ppm'))));
+  const last = readFileSync(join(place.path, `f${frames}.ppm`));
+  assert.equal(Buffer.compare((await pixels(page)).rgb, last.subarray(-200 * 160 * 3)), 0, 'the last view');
+});
+
 test('pages have their own views, and a page that goes away harms nobody', async () => {
   await settled(page);
   const other = await open(chromium, server.url);

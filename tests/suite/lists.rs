@@ -1,9 +1,11 @@
 //! Lists of spheres leave out nothing: pictures are byte for byte those for which every list has every sphere.
 
+use std::sync::Arc;
+
 use glam::DVec3;
-use trueray::accel::{Density, Rounding};
+use trueray::accel::{Acceleration, Density, KeptLists, Lists, Rounding};
 use trueray::cpu::Reference;
-use trueray::effects::Effects;
+use trueray::effects::{EffectSet, Effects};
 use trueray::engine::{Backend, Engine, Options, render_picture};
 use trueray::gpu::{Gpu, GpuRenderer, Kernel};
 use trueray::precision::Tier;
@@ -12,6 +14,7 @@ use trueray::settings::Settings;
 use trueray::stress::Random;
 use trueray::tuning::Tuning;
 use trueray::verify::Verify;
+use trueray::view::View;
 
 use crate::support::scene_of;
 
@@ -305,4 +308,61 @@ fn many_bounces_in_place_are_walked_at_once_instead() {
         assert_eq!(first_difference(&at_once, &in_place, &scene), None);
         assert!(at_once.iter().all(|&level| level > 150), "{:?}", at_once.iter().min());
     }
+}
+
+/// An eye among the spheres of [`random_scene`], or a little beside them.
+fn random_eye(random: &mut Random, scene: &Scene) -> View {
+    let far = scene.spheres.first().map_or(DVec3::ZERO, |sphere| sphere.center);
+    // Where the window looks at what is far off, the eye stays where that is seen.
+    let reach = if far.length() > 1e4 && scene.spheres.len() > 1 { 1e-3 } else { 3.0 };
+    let eye = random.in_box(reach);
+    let look_at = (reach > 1.0).then(|| DVec3::new(0.0, 0.0, -9.0) + random.in_box(2.0));
+    View::new(eye, look_at, DVec3::Y).unwrap()
+}
+
+/// What one eye leaves to the next has room for what the next one's rounding may take for a hit.
+#[test]
+fn lists_that_eyes_share_leave_out_nothing() {
+    let gpu = crate::support::gpu("lists_that_eyes_share_leave_out_nothing");
+    let kernels = gpu.iter().flat_map(|gpu| Tier::ALL.into_iter().filter_map(|tier| gpu.kernel(tier).ok()));
+    let renderers: Vec<Option<Kernel>> = kernels.map(Some).chain([None]).collect();
+    for kernel in renderers {
+        for seed in 0..if kernel.is_some() { KINDS } else { 4 * KINDS } {
+            let (scene, kept) = (random_scene(seed), KeptLists::default());
+            let mut random = Random::new(5, seed);
+            for eye in 0..3 {
+                let settings = Settings { view: random_eye(&mut random, &scene), ..settings_of(seed) };
+                let viewed = scene.viewed_again(&settings, &kept);
+                let effects = Effects::of(&viewed);
+                let mut rgb = vec![0; scene.width as usize * scene.height as usize * 3];
+                let all = if let (Some(gpu), Some(kernel)) = (&gpu, kernel) {
+                    let renderer = GpuRenderer::with_rounding(gpu, &viewed, &effects, kernel, kernel.rounding());
+                    assert!(renderer.unwrap().rows(0, &mut rgb).unwrap().cut.is_empty());
+                    device(gpu, kernel, &scene, &settings, Rounding::UNKNOWN)
+                } else {
+                    let reference = Reference::<f64>::with_rounding(&viewed, &effects, Rounding::DOUBLE);
+                    reference.rows(0, &mut rgb).unwrap();
+                    cpu(&scene, &settings, Rounding::UNKNOWN)
+                };
+                assert_eq!(first_difference(&all, &rgb, &scene), None, "{kernel:?}, scene {seed}, eye {eye}");
+            }
+        }
+    }
+}
+
+#[test]
+fn lists_are_kept_for_eyes_that_are_near_each_other() {
+    let scene = random_scene(1);
+    let kept = KeptLists::default();
+    let lists = |x: f64| {
+        let view = View::new(DVec3::new(x, 0.0, 0.0), None, DVec3::Y).unwrap();
+        let viewed = scene.viewed_again(&Settings { view, ..Settings::default() }, &kept);
+        Acceleration::new(&viewed, EffectSet::ALL, Rounding::SINGLE)
+    };
+    let (first, near, far) = (lists(0.0), lists(3.0), lists(300.0));
+    let is_same = |a: &Lists, b: &Lists| Arc::ptr_eq(&a.entries, &b.entries);
+    let grids = [&first, &near, &far].map(|accel| &accel.grid.as_ref().unwrap().lists);
+    assert!(is_same(grids[0], grids[1]) && !is_same(grids[0], grids[2]));
+    assert!(!first.lights.lists.is_empty() && is_same(&first.lights.lists[0], &near.lights.lists[0]));
+    assert!(first.screen.lists != near.screen.lists);
 }

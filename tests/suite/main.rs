@@ -63,4 +63,5 @@ mod twins;
 mod verify;
 #[cfg(feature = "view")]
 mod view;
+mod views;
 mod wide;

@@ -175,7 +175,7 @@ pub(crate) fn list_contents(accel: &Acceleration) -> [Contents<'_>; 2] {
         let place = move |index: usize| (offsets[index] as usize + base) as u32;
         Contents::new(lists.cells(), move |index: usize| [place(index), place(index + 1)])
     });
-    let entries = all_lists(accel).map(|lists| Contents::packed(&lists.entries));
+    let entries = all_lists(accel).map(|lists| Contents::packed(&lists.entries[..]));
     [Contents::joined(cells.collect()), Contents::joined(entries.collect())]
 }
 

@@ -1,0 +1,65 @@
+//! Many views of scenes: where the eye is in each frame.
+
+mod table;
+mod turntable;
+
+use std::path::PathBuf;
+
+use glam::DVec3;
+
+use crate::scene::{Scene, Window};
+use crate::view::{View, ViewError};
+
+pub use table::table;
+pub use turntable::{NoCenter, turntable};
+
+/// An eye in the words of `--eye`, `--look-at` and `--up`, in world units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Placement {
+    /// The eye.
+    pub eye: DVec3,
+    /// What is in the middle of the picture; without it the eye looks along −z.
+    pub look_at: Option<DVec3>,
+    /// What is upwards.
+    pub up: DVec3,
+}
+
+impl Placement {
+    /// The view from there.
+    ///
+    /// # Errors
+    ///
+    /// Where these define none.
+    pub fn view(&self) -> Result<View, ViewError> {
+        View::new(self.eye, self.look_at, self.up)
+    }
+}
+
+/// One picture of many: what is not as the scene has it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Frame {
+    /// The eye.
+    pub view: View,
+    /// Columns and rows, where they are not the scene's.
+    pub size: [Option<u32>; 2],
+    /// Near, left, right, bottom and top of the window, where they are not the scene's.
+    pub window: [Option<f64>; 5],
+    /// The file of another scene.
+    pub scene: Option<PathBuf>,
+}
+
+impl Frame {
+    /// The scene as it is, seen by this eye.
+    pub fn seen_by(view: View) -> Self {
+        Self { view, size: [None; 2], window: [None; 5], scene: None }
+    }
+
+    /// Sets window and size of `scene`, whose own are these.
+    pub fn apply(&self, scene: &mut Scene, window: Window, [width, height]: [u32; 2]) {
+        let own = [window.near, window.left, window.right, window.bottom, window.top];
+        let [near, left, right, bottom, top] = std::array::from_fn(|edge| self.window[edge].unwrap_or(own[edge]));
+        scene.window = Window { near, left, right, bottom, top };
+        scene.width = self.size[0].unwrap_or(width);
+        scene.height = self.size[1].unwrap_or(height);
+    }
+}
