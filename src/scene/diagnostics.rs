@@ -85,68 +85,72 @@ impl fmt::Display for Omitted {
 
 /// A part of a line, as byte range; empty where something is missing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) struct Span {
-    pub(super) start: usize,
-    pub(super) end: usize,
+pub(crate) struct Span {
+    pub(crate) start: usize,
+    pub(crate) end: usize,
 }
 
 /// One line of the file without its end.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Line<'a> {
+pub(crate) struct Line<'a> {
     /// From 1.
-    pub(super) number: usize,
-    pub(super) bytes: &'a [u8],
+    pub(crate) number: usize,
+    pub(crate) bytes: &'a [u8],
 }
 
 impl<'a> Line<'a> {
-    pub(super) fn token(self, span: Span) -> &'a [u8] {
+    pub(crate) fn token(self, span: Span) -> &'a [u8] {
         &self.bytes[span.start..span.end]
     }
 
-    pub(super) fn place(self, span: Span) -> Location<'a> {
+    pub(crate) fn place(self, span: Span) -> Location<'a> {
         Location { line: self, span }
     }
 }
 
 /// Where a diagnostic points.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Location<'a> {
-    pub(super) line: Line<'a>,
-    pub(super) span: Span,
+pub(crate) struct Location<'a> {
+    pub(crate) line: Line<'a>,
+    pub(crate) span: Span,
 }
 
 /// What a diagnostic says.
-pub(super) struct Detail<'a> {
-    pub(super) message: String,
-    pub(super) expected: String,
-    pub(super) help: Option<String>,
+pub(crate) struct Detail<'a> {
+    pub(crate) message: String,
+    pub(crate) expected: String,
+    pub(crate) help: Option<String>,
     /// Shown instead of the token where the place is empty.
-    pub(super) absent: &'static str,
-    pub(super) earlier: Option<(Location<'a>, &'static str)>,
+    pub(crate) absent: &'static str,
+    pub(crate) earlier: Option<(Location<'a>, &'static str)>,
 }
 
 impl Detail<'_> {
-    pub(super) fn new(message: impl Into<String>, expected: impl Into<String>) -> Self {
+    pub(crate) fn new(message: impl Into<String>, expected: impl Into<String>) -> Self {
         Self { message: message.into(), expected: expected.into(), help: None, absent: "end of line", earlier: None }
     }
 
-    pub(super) fn help(self, help: impl Into<String>) -> Self {
+    pub(crate) fn help(self, help: impl Into<String>) -> Self {
         Self { help: Some(help.into()), ..self }
     }
 }
 
 /// What a warning is about; each is bounded on its own, so that a million colours do not hide a mirrored window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Topic {
+pub(crate) enum Topic {
     Color,
     Coefficient,
     Intensity,
     Tiny,
     Window,
+    /// Of imported files.
+    Kind,
+    Record,
 }
 
 impl Topic {
-    const ALL: [Self; 5] = [Self::Color, Self::Coefficient, Self::Intensity, Self::Tiny, Self::Window];
+    const ALL: [Self; 7] =
+        [Self::Color, Self::Coefficient, Self::Intensity, Self::Tiny, Self::Window, Self::Kind, Self::Record];
 
     fn warnings(self) -> &'static str {
         match self {
@@ -155,13 +159,15 @@ impl Topic {
             Self::Intensity => "warnings about negative or huge intensities are",
             Self::Tiny => "warnings about numbers too small for full precision are",
             Self::Window => "warnings about the window are",
+            Self::Kind => "warnings about unknown elements are",
+            Self::Record => "warnings about unknown records are",
         }
     }
 }
 
 /// Collects diagnostics, keeps the first of each kind and counts all.
 #[derive(Default)]
-pub(super) struct Collector {
+pub(crate) struct Collector {
     kept: Vec<Diagnostic>,
     errors: usize,
     warnings: [usize; Topic::ALL.len()],
@@ -170,7 +176,7 @@ pub(super) struct Collector {
 impl Collector {
     /// Counts an error; `detail` is only asked while errors are kept.
     #[cold]
-    pub(super) fn error<'a>(&mut self, place: Location<'_>, detail: impl FnOnce() -> Detail<'a>) {
+    pub(crate) fn error<'a>(&mut self, place: Location<'_>, detail: impl FnOnce() -> Detail<'a>) {
         self.errors += 1;
         if self.errors <= ERRORS_KEPT {
             self.kept.push(Diagnostic::new(Severity::Error, place, detail()));
@@ -179,7 +185,7 @@ impl Collector {
 
     /// Counts a warning; `detail` is only asked while warnings of this topic are kept.
     #[cold]
-    pub(super) fn warning<'a>(&mut self, topic: Topic, place: Location<'_>, detail: impl FnOnce() -> Detail<'a>) {
+    pub(crate) fn warning<'a>(&mut self, topic: Topic, place: Location<'_>, detail: impl FnOnce() -> Detail<'a>) {
         let count = &mut self.warnings[topic as usize];
         *count += 1;
         if *count <= WARNINGS_KEPT {
@@ -187,7 +193,7 @@ impl Collector {
         }
     }
 
-    pub(super) fn error_count(&self) -> usize {
+    pub(crate) fn error_count(&self) -> usize {
         self.errors
     }
 
@@ -404,7 +410,7 @@ fn column(place: Location<'_>) -> usize {
 }
 
 /// A token for use in a message: safe to print, cut if it is long.
-pub(super) fn shown(token: &[u8]) -> String {
+pub(crate) fn shown(token: &[u8]) -> String {
     // No character takes more than 4 bytes; one more than are shown tells whether something is cut.
     let mut text = String::new();
     push_visible(&mut text, &token[..token.len().min(4 * (TOKEN_SHOWN + 1))]);

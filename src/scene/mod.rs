@@ -10,7 +10,10 @@ mod parse;
 mod write;
 
 pub use check::{Invalid, SceneError};
+pub(crate) use diagnostics::{Collector, Detail, Line, Location, Span, Topic, shown};
 pub use diagnostics::{Diagnostic, Omitted, Severity};
 pub use foreign::foreign_kind;
 pub use model::{Light, MAX_RESOLUTION, Names, Scene, Sphere, Window, resolution};
+pub(crate) use parse::is_statement;
+pub(crate) use parse::{Fault, parse_number};
 pub use parse::{Parsed, parse};

@@ -12,7 +12,7 @@ const EXACT: u64 = 1 << 53;
 
 /// Why a token is no number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Fault {
+pub(crate) enum Fault {
     /// It is not written like one.
     Syntax,
     /// It is `NaN` or an infinity by name.
@@ -25,7 +25,7 @@ pub(super) enum Fault {
 ///
 /// Short numbers are one exact integer and one exact power of ten, so that a single division or multiplication rounds
 /// correctly; all others go to the standard library.
-pub(super) fn parse_number(token: &[u8]) -> Result<f64, Fault> {
+pub(crate) fn parse_number(token: &[u8]) -> Result<f64, Fault> {
     let (negative, unsigned) = match token {
         [b'-', rest @ ..] => (true, rest),
         [b'+', rest @ ..] => (false, rest),
