@@ -12,12 +12,11 @@
 //!
 //! let water = b"3\nwater\nO 0 0 0.119\nH 0 0.763 -0.477\nH 0 -0.763 -0.477\n";
 //! let options = Options { radius: Radius::Covalent, ..Options::default() };
-//! let scene = scene("water.xyz", water, &options).unwrap();
-//! assert_eq!(scene.spheres.len(), 3);
-//! assert_eq!(scene.spheres[1].scale.x, 0.31);
+//! let water = scene("water.xyz", water, &options).unwrap();
+//! assert_eq!(water.spheres.len(), 3);
+//! assert_eq!(water.spheres[1].scale.x, 0.31);
 //!
-//! let error = scene_error(b"1\nhelium\nHe 0 0 zero\n");
-//! # fn scene_error(text: &[u8]) -> String { scene("bad.xyz", text, &Options::default()).unwrap_err().to_string() }
+//! let error = scene("bad.xyz", b"1\nhelium\nHe 0 0 zero\n", &options).unwrap_err().to_string();
 //! assert!(error.contains("bad.xyz:3:8") && error.contains("`zero` is not a number"));
 //! ```
 
