@@ -86,6 +86,7 @@ pub mod gpu;
 #[doc(hidden)]
 pub mod grade;
 mod hash;
+pub mod import;
 #[doc(hidden)]
 pub mod limits;
 #[doc(hidden)]

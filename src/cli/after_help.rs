@@ -89,6 +89,14 @@ Examples:
   trueray bench --families spheres --max-spheres 10000 --report bench.html
   trueray bench --tune";
 
+pub(super) const IMPORT: &str = "\
+Examples:
+  trueray import protein.pdb -o scene.txt
+  trueray import --frame 1-50 --color-by vz:coolwarm dump.lammpstrj -o scene_%04d.txt
+
+A file is told by what it begins with, not by its name. render, view, check and export take the same files and options. Camera, \
+range of colours and substitute radii are those of the first frame that is read.";
+
 pub(super) const EXPORT: &str = "\
 Examples:
   trueray export scene.txt --to povray -o scene.pov

@@ -11,6 +11,7 @@ use super::input::{Input, print_doubts};
 use super::named::{check_named, format_by_ending};
 use super::options::PictureOptions;
 use super::output::{out, outln};
+use super::particles::ParticleOptions;
 use super::render::{explanation, precision_explanation};
 use crate::effects::Effects;
 use crate::limits;
@@ -27,6 +28,8 @@ pub(super) struct Args {
     scenes: Vec<PathBuf>,
     #[command(flatten)]
     picture: PictureOptions,
+    #[command(flatten)]
+    particles: ParticleOptions,
     /// Print JSON
     #[arg(long, help_heading = "Output")]
     json: bool,
@@ -138,10 +141,11 @@ fn named_doubt(scene: &Scene) -> Option<String> {
 
 pub(super) fn run(args: &Args) -> Result<u8, Failure> {
     let settings = args.picture.settings()?;
+    let reading = args.particles.one_frame(args.picture.resolution())?;
     let mut summaries = Vec::new();
     let mut code = OK;
     for path in &args.scenes {
-        let mut input = match Input::read(path) {
+        let mut input = match Input::read(path, &reading) {
             Ok(input) => input,
             Err(failure) => {
                 code = failure.code;

@@ -13,6 +13,7 @@ use super::input::{Input, Loaded};
 use super::named::format_by_ending;
 use super::options::{DeviceOptions, PictureOptions, SeveralDevices, open_device};
 use super::output::{errln, out, outln};
+use super::particles::Reading;
 use crate::compare::{
     Band, BySphere, Comparison, Difference, Explanation, Limits, SCALE, SizeMismatch, Verdict, heatmap, three_wide,
     verdict,
@@ -300,7 +301,7 @@ enum Compared {
 
 /// The scene in the size that is asked for.
 fn load(args: &Args, scene: &Path) -> Result<Loaded, Failure> {
-    let input = Input::read(scene)?;
+    let input = Input::read(scene, &Reading::usual(args.picture.resolution()))?;
     if args.json && input.parsed.scene.is_none() {
         return Err(Failure::new(USAGE, input.parsed.report(false).trim_end()));
     }

@@ -8,6 +8,7 @@ use super::guard::Guard;
 use super::input::Loaded;
 use super::options::PictureOptions;
 use super::output::errln;
+use super::particles::ParticleOptions;
 use crate::effects::Effects;
 use crate::export::{Obstacle, Peer, export};
 
@@ -19,6 +20,8 @@ pub(super) struct Args {
     scene: PathBuf,
     #[command(flatten)]
     picture: PictureOptions,
+    #[command(flatten)]
+    particles: ParticleOptions,
     /// The renderer: povray (3.7) or tachyon (0.99)
     #[arg(long, value_name = "RENDERER", help_heading = "Output")]
     to: Peer,
@@ -29,7 +32,8 @@ pub(super) struct Args {
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     Guard::new([&args.scene]).options([("--output", &Some(args.output.clone()))])?;
-    let mut loaded = Loaded::read(&args.scene, false)?;
+    let reading = args.particles.one_frame(args.picture.resolution())?;
+    let mut loaded = Loaded::read(&args.scene, &reading, false)?;
     args.picture.resize(&mut loaded.scene);
     let (scene, settings) = (&loaded.scene, args.picture.settings()?);
     let viewed = scene.viewed(&settings);

@@ -15,6 +15,7 @@ use super::guard::Guard;
 use super::input::Loaded;
 use super::options::{DeviceOptions, PictureOptions};
 use super::output::out;
+use super::particles::Reading;
 use super::progress::{Progress, Style};
 use crate::cpu::Judge;
 use crate::effects::Effects;
@@ -86,7 +87,7 @@ struct Task {
 
 impl Task {
     fn read(args: &Args, file: &Path, settings: &Settings, gpu: Option<&Gpu>) -> Result<Self, Failure> {
-        let Loaded { name, mut scene, .. } = Loaded::read(file, true)?;
+        let Loaded { name, mut scene, .. } = Loaded::read(file, &Reading::usual(args.picture.resolution()), true)?;
         args.picture.resize(&mut scene);
         let viewed = scene.viewed(settings);
         let effects = args.picture.renderable_effects(&viewed).map_err(|failure| failure.of(&name))?;

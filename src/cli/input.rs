@@ -1,15 +1,70 @@
 //! Reading scene files for the subcommands.
 
 use std::ffi::OsStr;
+use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use super::color;
-use super::failure::{Failure, SCENE};
+use super::failure::{Failure, SCENE, USAGE};
 use super::output::{err, errln};
+use super::particles::Reading;
+use crate::import::{Format, Import};
 use crate::scene::{Parsed, Scene, foreign_kind, parse};
 use crate::words::visible;
+
+/// So much of a file tells its format.
+const HEAD: u64 = 1 << 16;
+
+/// A file of which the beginning has been read.
+pub(super) struct Opened {
+    /// Its name as the user gave it.
+    pub name: String,
+    /// The format of the particles in it.
+    pub format: Option<Format>,
+    head: Vec<u8>,
+    rest: Box<dyn Read>,
+}
+
+impl Opened {
+    /// Opens the file at `path`, or standard input for `-`.
+    pub(super) fn open(path: &Path) -> Result<Self, Failure> {
+        let stdin = path == Path::new("-");
+        let name = if stdin { "standard input".to_owned() } else { path.display().to_string() };
+        if path.is_dir() {
+            return Err(unreadable(&name, "that is a folder"));
+        }
+        let open = || -> std::io::Result<Box<dyn Read>> {
+            if stdin {
+                return Ok(Box::new(std::io::stdin().lock()));
+            }
+            Ok(Box::new(File::open(path)?))
+        };
+        let mut rest = open().map_err(|error| unreadable(&name, &error.to_string()))?;
+        let mut head = Vec::new();
+        let read = rest.by_ref().take(HEAD).read_to_end(&mut head);
+        read.map_err(|error| unreadable(&name, &error.to_string()))?;
+        let format = Format::of(&head);
+        Ok(Self { name, format, head, rest })
+    }
+
+    /// All of the file.
+    pub(super) fn into_reader(self) -> impl Read {
+        std::io::Cursor::new(self.head).chain(self.rest)
+    }
+
+    /// All of the file at once.
+    fn into_text(self) -> Result<Vec<u8>, Failure> {
+        let Self { name, mut head, mut rest, .. } = self;
+        rest.read_to_end(&mut head).map_err(|error| unreadable(&name, &error.to_string()))?;
+        Ok(head)
+    }
+}
+
+fn unreadable(name: &str, why: &str) -> Failure {
+    Failure::new(SCENE, format!("cannot read the scene {}: {why}", visible(name)))
+}
 
 /// A scene file that has been read, with errors or without.
 #[derive(Debug)]
@@ -21,30 +76,31 @@ pub(super) struct Input {
     /// Reading and parsing.
     pub parse_time: Duration,
     path: Option<PathBuf>,
+    notes: Vec<String>,
 }
 
 impl Input {
     /// Reads the file at `path`, or standard input for `-`; errors in the scene stay in `parsed`.
-    pub(super) fn read(path: &Path) -> Result<Self, Failure> {
+    pub(super) fn read(path: &Path, reading: &Reading) -> Result<Self, Failure> {
         let start = Instant::now();
-        let stdin = path == Path::new("-");
-        let name = if stdin { "standard input".to_owned() } else { path.display().to_string() };
-        let refused = |why: String| Failure::new(SCENE, format!("cannot read the scene {}: {why}", visible(&name)));
-        if path.is_dir() {
-            return Err(refused("that is a folder".into()));
-        }
-        let text = if stdin {
-            let mut text = Vec::new();
-            std::io::stdin().lock().read_to_end(&mut text).map(|_| text)
+        let opened = Opened::open(path)?;
+        let name = opened.name.clone();
+        let (parsed, notes) = if let Some(format) = opened.format {
+            let imported = Import::new(&name, format, opened.into_reader(), reading.options.clone()).first();
+            (imported.parsed, imported.notes)
         } else {
-            std::fs::read(path)
+            let text = opened.into_text()?;
+            if let Some(kind) = foreign_kind(&text) {
+                return Err(Failure::new(SCENE, format!("{}: this is {kind}, not a scene", visible(&name))));
+            }
+            if reading.is_for_particles {
+                let message = "this holds no particles of a known format, to which options such as --radius apply";
+                return Err(Failure::new(USAGE, format!("{}: {message}", visible(&name))));
+            }
+            (parse(&name, &text), Vec::new())
         };
-        let text = text.map_err(|error| refused(error.to_string()))?;
-        if let Some(kind) = foreign_kind(&text) {
-            return Err(Failure::new(SCENE, format!("{}: this is {kind}, not a scene", visible(&name))));
-        }
-        let parsed = parse(&name, &text);
-        Ok(Self { name, parsed, parse_time: start.elapsed(), path: (!stdin).then(|| path.to_owned()) })
+        let path = (path != Path::new("-")).then(|| path.to_owned());
+        Ok(Self { name, parsed, parse_time: start.elapsed(), path, notes })
     }
 
     /// Prints errors and warnings and returns the scene, if it can be rendered.
@@ -56,11 +112,19 @@ impl Input {
         }
     }
 
-    /// Prints the parser's report to standard error; warnings only unless `quiet`.
+    /// Prints the parser's report to standard error; errors only if `quiet`.
     pub(super) fn print_diagnostics(&self, quiet: bool) {
-        if self.parsed.errors > 0 || !quiet {
-            err!("{}", self.parsed.report(color::is_on(&std::io::stderr())));
-        }
+        print_parsed(&self.parsed, &self.notes, &self.name, quiet);
+    }
+}
+
+/// Prints what was found in a file to standard error; errors only if `quiet`.
+pub(super) fn print_parsed(parsed: &Parsed, notes: &[String], name: &str, quiet: bool) {
+    if parsed.errors > 0 || !quiet {
+        err!("{}", parsed.report(color::is_on(&std::io::stderr())));
+    }
+    for note in notes.iter().filter(|_| !quiet) {
+        errln!("trueray: {}: {note}", visible(name));
     }
 }
 
@@ -84,8 +148,8 @@ pub(super) struct Loaded {
 
 impl Loaded {
     /// Reads a scene that is to be rendered.
-    pub(super) fn read(path: &Path, quiet: bool) -> Result<Self, Failure> {
-        Input::read(path)?.into_renderable(quiet)
+    pub(super) fn read(path: &Path, reading: &Reading, quiet: bool) -> Result<Self, Failure> {
+        Input::read(path, reading)?.into_renderable(quiet)
     }
 
     /// The file name that OUTPUT or, without one, the scene's own name gives.

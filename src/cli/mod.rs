@@ -16,6 +16,7 @@ mod failure;
 mod files;
 mod grade;
 mod guard;
+mod import;
 mod input;
 mod manual;
 mod merge;
@@ -23,6 +24,7 @@ mod named;
 mod options;
 mod output;
 mod part;
+mod particles;
 mod pixel;
 mod progress;
 mod render;
@@ -74,6 +76,7 @@ struct Cli {
 }
 
 #[derive(Debug, Subcommand)]
+#[allow(clippy::large_enum_variant, reason = "there is one of it")]
 enum Command {
     /// Render scenes to picture files
     #[command(after_help = after_help::RENDER)]
@@ -108,6 +111,9 @@ enum Command {
     /// Measure how fast built-in scenes of growing size are rendered
     #[command(after_help = after_help::BENCH)]
     Bench(bench::Args),
+    /// Write the particles of another program's file as a scene
+    #[command(after_help = after_help::IMPORT)]
+    Import(import::Args),
     /// Write a scene for POV-Ray or Tachyon
     #[command(after_help = after_help::EXPORT)]
     Export(export::Args),
@@ -167,6 +173,7 @@ pub fn run() -> ExitCode {
         Some(Command::Stress(args)) => stress::run(&args).map_err(Failure::without_cpu),
         Some(Command::Conform(args)) => conform::run(&args).map_err(Failure::without_cpu),
         Some(Command::Bench(args)) => bench::run(&args).map(ok),
+        Some(Command::Import(args)) => import::run(&args).map(ok),
         Some(Command::Export(args)) => export::run(&args).map(ok),
         #[cfg(feature = "view")]
         Some(Command::View(args)) => view::run(&args).map(ok),

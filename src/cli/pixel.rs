@@ -10,6 +10,7 @@ use super::files::json;
 use super::input::Input;
 use super::options::PictureOptions;
 use super::output::{out, outln};
+use super::particles::Reading;
 use crate::cpu::{Decision, Finding, Inspector, MOST_RAYS, PixelRecord, Reference};
 use crate::effects::Effects;
 use crate::engine::{Backend, Engine, Options, Pixels, device_name};
@@ -98,7 +99,8 @@ enum Verdict {
 }
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    let mut loaded = Input::read(&args.scene)?.into_renderable(args.json)?;
+    let mut loaded =
+        Input::read(&args.scene, &Reading::usual(args.picture.resolution()))?.into_renderable(args.json)?;
     args.picture.resize(&mut loaded.scene);
     let (scene, settings) = (&loaded.scene, args.picture.settings()?);
     let (x, y) = (args.x, args.y);

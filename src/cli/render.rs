@@ -16,6 +16,7 @@ use super::named::{check_named, format_by_ending};
 use super::options::{DeviceOptions, PictureOptions};
 use super::output::{err, errln};
 use super::part::PartOptions;
+use super::particles::ParticleOptions;
 use super::progress::{Progress, Style};
 use super::sampling::{Choice, SamplingOptions};
 use super::stats::{Sampled, Stats, Verified, peak_memory_mib};
@@ -41,6 +42,8 @@ pub(super) struct Args {
     scenes: Vec<PathBuf>,
     #[command(flatten)]
     picture: PictureOptions,
+    #[command(flatten)]
+    particles: ParticleOptions,
     #[command(flatten)]
     views: views::Options,
     #[command(flatten)]
@@ -116,6 +119,7 @@ fn render_all(args: &Args) -> Result<u8, Failure> {
     check_certificate(args)?;
     args.part.check(args.scenes.len(), args.output.as_deref())?;
     let settings = args.picture.settings()?;
+    let reading = args.particles.one_frame(args.picture.resolution())?;
     let mut guard = Guard::new(&args.scenes);
     guard.options([("--certificate", &args.certificate)])?;
     args.aov.check_file(args.scenes.len(), &mut guard)?;
@@ -128,7 +132,7 @@ fn render_all(args: &Args) -> Result<u8, Failure> {
     let start = Instant::now();
     let read = || {
         // What OUTPUT names has to be known of all before any is rendered.
-        let scenes: Vec<_> = args.scenes.iter().map(|path| Loaded::read(path, args.quiet)).collect();
+        let scenes: Vec<_> = args.scenes.iter().map(|path| Loaded::read(path, &reading, args.quiet)).collect();
         let ahead = scenes[0].as_ref().ok().and_then(|loaded| args.ahead(&loaded.scene, &settings));
         (scenes, ahead)
     };

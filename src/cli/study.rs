@@ -9,6 +9,7 @@ use super::guard::Guard;
 use super::input::Loaded;
 use super::options::{DeviceOptions, PictureOptions, samples_per_side};
 use super::output::errln;
+use super::particles::Reading;
 use super::progress::{Progress, Style};
 use super::reports::Reports;
 use super::signals::{say_last, say_nothing};
@@ -76,7 +77,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     say_last(move || lock(&last).interrupted());
     let parts = args.scenes.len() as f64;
     for (number, path) in args.scenes.iter().enumerate() {
-        let mut loaded = Loaded::read(path, false)?;
+        let mut loaded = Loaded::read(path, &Reading::usual(args.picture.resolution()), false)?;
         args.picture.resize(&mut loaded.scene);
         let scene = &loaded.scene;
         let deepest = plan.depths.iter().copied().fold(settings.max_depth, u32::max);

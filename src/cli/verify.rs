@@ -10,6 +10,7 @@ use super::files::report_json;
 use super::input::Input;
 use super::options::{DeviceOptions, PictureOptions};
 use super::output::{out, outln};
+use super::particles::Reading;
 use crate::certificate::{PictureHasher, SceneHash, Subject};
 use crate::engine::{Backend, Engine, Stages, device_name, render_bands};
 use crate::film::{Leniency, Picture};
@@ -95,7 +96,7 @@ pub(super) fn run(args: &Args) -> u8 {
 }
 
 fn verify(args: &Args) -> Result<u8, Failure> {
-    let input = Input::read(&args.scene)?;
+    let input = Input::read(&args.scene, &Reading::usual(args.options.resolution()))?;
     if args.json && input.parsed.scene.is_none() {
         return Err(Failure::new(USAGE, input.parsed.report(false).trim_end()));
     }

@@ -8,6 +8,7 @@ use super::failure::{Failure, NO_THREAD, OUTPUT, USAGE};
 use super::input::Loaded;
 use super::options::{DeviceOptions, PictureOptions};
 use super::output::{errln, outln};
+use super::particles::ParticleOptions;
 use crate::gpu;
 use crate::gpu::USUAL_KERNELS;
 use crate::threads::{at_once, is_alone};
@@ -21,6 +22,8 @@ pub(super) struct Args {
     scene: PathBuf,
     #[command(flatten)]
     picture: PictureOptions,
+    #[command(flatten)]
+    particles: ParticleOptions,
     #[command(flatten)]
     device: DeviceOptions,
     /// Where the page is served; port 0 is any free one
@@ -36,6 +39,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         return Err(Failure::new(USAGE, "a scene that is to be watched must be a file"));
     }
     args.picture.settings()?;
+    let reading = args.particles.one_frame(args.picture.resolution())?;
     if is_alone() {
         return Err(Failure::new(
             NO_THREAD,
@@ -45,14 +49,15 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     // Opening a device takes longer than reading most scenes: both at once. A page may come before either.
     let server = Server::bind(args.listen)
         .map_err(|error| Failure::new(OUTPUT, format!("cannot listen at {}: {error}", args.listen)))?;
-    let (gpu, loaded) = at_once(|| args.device.open_with(args.quiet), || Loaded::read(&args.scene, args.quiet));
+    let (gpu, loaded) =
+        at_once(|| args.device.open_with(args.quiet), || Loaded::read(&args.scene, &reading, args.quiet));
     let (loaded, gpu) = (loaded?, gpu?);
     // Whoever is quiet wants to know this all the same.
     if !args.listen.ip().is_loopback() {
         errln!("trueray: the page is served to the network, without encryption");
     }
     let view = args.picture.view_state(&loaded.scene, args.device.precision)?;
-    let render_loop = Arc::new(RenderLoop::new(SceneFile::new(&args.scene, loaded.scene), view));
+    let render_loop = Arc::new(RenderLoop::new(SceneFile::new(&args.scene, loaded.scene, reading.options), view));
     let no_thread = |error: std::io::Error| Failure::new(NO_THREAD, format!("the system gives no thread: {error}"));
     watch(Arc::clone(&render_loop.scene_file), Arc::clone(&render_loop.wake), Arc::clone(&render_loop.quit))
         .map_err(no_thread)?;

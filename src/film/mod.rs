@@ -23,8 +23,8 @@ pub(crate) use pfm::encode_pfm;
 pub use problem::{FilePosition, Problem, ProblemKind, ReadError, SamplePosition, Warning};
 pub use read::{Encoded, Leniency, Reading, decode, read_picture};
 pub use rows::RowReader;
-pub(crate) use write::save_bytes;
 pub use write::{OutputError, PictureWriter, Target, encode_png, save_text};
+pub(crate) use write::{save_by, save_bytes};
 
 /// The greatest width and the greatest height of a [`Picture`], in pixels.
 ///

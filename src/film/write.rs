@@ -189,9 +189,18 @@ pub fn save_text(target: &Target, text: &str) -> Result<(), OutputError> {
 
 /// Likewise of bytes.
 pub(crate) fn save_bytes(target: &Target, bytes: &[u8]) -> Result<(), OutputError> {
-    let (raw, destination) = target.open(bytes.len() as u64).map_err(|source| target.error("create", source))?;
+    save_by(target, bytes.len() as u64, |output| output.write_all(bytes))
+}
+
+/// Likewise of what `write` writes, so many bytes or more.
+pub(crate) fn save_by(
+    target: &Target,
+    bytes: u64,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), OutputError> {
+    let (raw, destination) = target.open(bytes).map_err(|source| target.error("create", source))?;
     let mut output = Watched { raw, failure: Failure::default() };
-    output.write_all(bytes).and_then(|()| output.flush()).map_err(|source| target.error("write", source))?;
+    write(&mut output).and_then(|()| output.flush()).map_err(|source| target.error("write", source))?;
     drop(output);
     destination.map_or(Ok(()), Destination::commit).map_err(|source| target.error("finish", source))
 }

@@ -34,6 +34,13 @@ impl std::error::Error for Invalid {}
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SceneError(String);
 
+impl SceneError {
+    /// With this text.
+    pub(crate) fn new(text: String) -> Self {
+        Self(text)
+    }
+}
+
 impl fmt::Display for SceneError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.0.trim_end())

@@ -137,16 +137,20 @@ impl Detail<'_> {
 
 /// What a warning is about; each is bounded on its own, so that a million colours do not hide a mirrored window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Topic {
+pub(crate) enum Topic {
     Color,
     Coefficient,
     Intensity,
     Tiny,
     Window,
+    /// Of imported files.
+    Kind,
+    Record,
 }
 
 impl Topic {
-    const ALL: [Self; 5] = [Self::Color, Self::Coefficient, Self::Intensity, Self::Tiny, Self::Window];
+    const ALL: [Self; 7] =
+        [Self::Color, Self::Coefficient, Self::Intensity, Self::Tiny, Self::Window, Self::Kind, Self::Record];
 
     fn warnings(self) -> &'static str {
         match self {
@@ -155,6 +159,8 @@ impl Topic {
             Self::Intensity => "warnings about negative or huge intensities are",
             Self::Tiny => "warnings about numbers too small for full precision are",
             Self::Window => "warnings about the window are",
+            Self::Kind => "warnings about unknown elements are",
+            Self::Record => "warnings about unknown records are",
         }
     }
 }
@@ -179,7 +185,7 @@ impl Collector {
 
     /// Counts a warning; `detail` is only asked while warnings of this topic are kept.
     #[cold]
-    pub(super) fn warning<'a>(&mut self, topic: Topic, place: Location<'_>, detail: impl FnOnce() -> Detail<'a>) {
+    pub(crate) fn warning<'a>(&mut self, topic: Topic, place: Location<'_>, detail: impl FnOnce() -> Detail<'a>) {
         let count = &mut self.warnings[topic as usize];
         *count += 1;
         if *count <= WARNINGS_KEPT {

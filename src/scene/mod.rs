@@ -10,9 +10,9 @@ mod parse;
 mod write;
 
 pub use check::{Invalid, SceneError};
-pub(crate) use diagnostics::{Collector, Detail, Line, Span, render as show_diagnostics, shown};
+pub(crate) use diagnostics::{Collector, Detail, Line, Location, Span, Topic, render as show_diagnostics, shown};
 pub use diagnostics::{Diagnostic, Omitted, Severity};
 pub use foreign::foreign_kind;
 pub use model::{Light, MAX_RESOLUTION, Names, Scene, Sphere, Window, resolution};
 pub use parse::{Parsed, parse};
-pub(crate) use parse::{first_line, parse_number};
+pub(crate) use parse::{Fault, first_line, is_statement, parse_number};

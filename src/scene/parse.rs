@@ -11,8 +11,8 @@ use glam::DVec3;
 
 pub(super) use self::keyword::{Field, Keyword};
 use self::keyword::{Guess, MAX_FIELDS, Rule};
-pub(crate) use self::number::parse_number;
-use self::number::{Fault, is_tiny};
+use self::number::is_tiny;
+pub(crate) use self::number::{Fault, parse_number};
 use super::diagnostics::{Collector, Detail, Diagnostic, Line, Location, Omitted, Span, Topic, render, shown};
 use super::{Light, MAX_RESOLUTION, Names, Scene, Sphere, Window};
 use crate::words::{count, is_hidden};
@@ -34,6 +34,14 @@ pub struct Parsed {
 }
 
 impl Parsed {
+    /// What a collector of diagnostics says of a file; the scene goes where there are errors.
+    pub(crate) fn of(file: &str, scene: Option<Scene>, collector: Collector) -> Self {
+        let (errors, warnings) = (collector.error_count(), collector.warning_count());
+        let (diagnostics, omitted) = collector.finish();
+        let scene = scene.filter(|_| errors == 0);
+        Self { scene, diagnostics, omitted, errors, warnings, file: file.to_owned() }
+    }
+
     /// All diagnostics as text for people, each with its source line; with ANSI colours if `color`.
     ///
     /// Empty if there are none, else it ends with a blank line.
@@ -53,6 +61,11 @@ pub fn parse(file: &str, text: &[u8]) -> Parsed {
         parser.run(text.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(text));
     }
     parser.finish(file)
+}
+
+/// Whether a token begins a statement of a scene.
+pub(crate) fn is_statement(token: &[u8]) -> bool {
+    Keyword::from_token(token).is_some()
 }
 
 /// Where the fields of a line are. One is reused for all lines.
@@ -362,8 +375,6 @@ impl<'a> Parser<'a> {
     }
 
     fn finish(self, file: &str) -> Parsed {
-        let errors = self.collector.error_count();
-        let warnings = self.collector.warning_count();
         let singles = self.singles;
         let values = |keyword: Keyword| singles[keyword as usize].and_then(|single| single.values).unwrap_or(NO_VALUES);
         let color = |keyword| DVec3::from_slice(&values(keyword)[..3]);
@@ -386,9 +397,8 @@ impl<'a> Parser<'a> {
             ambient: color(Keyword::Ambient),
             output: self.output,
         };
-        let scene = (errors == 0).then(scene);
-        let (diagnostics, omitted) = self.collector.finish();
-        Parsed { scene, diagnostics, omitted, errors, warnings, file: file.to_owned() }
+        let scene = (self.collector.error_count() == 0).then(scene);
+        Parsed::of(file, scene, self.collector)
     }
 }
 

@@ -9,6 +9,7 @@ use std::time::{Duration, SystemTime};
 use serde::Serialize;
 
 use super::wake_signal::WakeSignal;
+use crate::import::{self, Format, Import};
 use crate::panics::message;
 use crate::scene::{Scene, Severity, parse};
 use crate::threads::lock;
@@ -43,20 +44,22 @@ pub struct SceneFile {
     pub path: PathBuf,
     /// What is known of it.
     pub slot: Mutex<SceneSlot>,
+    /// How its particles become spheres, where it is another program's.
+    import: import::Options,
 }
 
 impl SceneFile {
-    /// A file that has been read as `scene`.
-    pub fn new(path: &Path, scene: Scene) -> Self {
+    /// A file that has been read as `scene`; particles in it were imported like this.
+    pub fn new(path: &Path, scene: Scene, import: import::Options) -> Self {
         let slot = SceneSlot { fresh: Some(scene), error: None, revision: 1 };
-        Self { path: path.to_owned(), slot: Mutex::new(slot) }
+        Self { path: path.to_owned(), slot: Mutex::new(slot), import }
     }
 
     /// Reads the file again.
     fn read(&self) {
         let name = self.path.display().to_string();
         // Whatever is in the file, the next one is looked at.
-        let result = catch_unwind(|| read(&name, &self.path)).unwrap_or_else(|panic| {
+        let result = catch_unwind(|| read(&name, &self.path, &self.import)).unwrap_or_else(|panic| {
             Err(SceneError { line: 0, text: format!("the scene {name} cannot be read: {}", message(&*panic)) })
         });
         let mut slot = lock(&self.slot);
@@ -68,10 +71,13 @@ impl SceneFile {
     }
 }
 
-fn read(name: &str, path: &Path) -> Result<Scene, SceneError> {
+fn read(name: &str, path: &Path, import: &import::Options) -> Result<Scene, SceneError> {
     let text = std::fs::read(path)
         .map_err(|error| SceneError { line: 0, text: format!("cannot read the scene {name}: {error}") })?;
-    let parsed = parse(name, &text);
+    let parsed = match Format::of(&text) {
+        Some(format) => Import::new(name, format, &text[..], import.clone()).first().parsed,
+        None => parse(name, &text),
+    };
     let line = parsed.diagnostics.iter().find(|diagnostic| diagnostic.severity == Severity::Error);
     let line = line.map_or(0, |diagnostic| diagnostic.line);
     let report = parsed.report(false);

@@ -599,9 +599,11 @@ fn options_stand_in_groups() {
     };
     let render = groups("render");
     let headings: Vec<_> = render.iter().map(|(heading, _)| heading.as_str()).collect();
-    let expected = ["Options", "Scene", "Picture", "Camera", "Sampling", "Device", "Output"];
+    let expected = ["Options", "Scene", "Picture", "Camera", "Particles", "Sampling", "Device", "Output"];
     assert_eq!(headings, expected);
-    for (heading, option) in [(2, "res"), (3, "eye"), (4, "foveate"), (5, "device"), (6, "output"), (6, "color")] {
+    for (heading, option) in
+        [(2, "res"), (3, "eye"), (4, "radius"), (5, "foveate"), (6, "device"), (7, "output"), (7, "color")]
+    {
         assert!(render[heading].1.iter().any(|other| other == option), "{option}: {render:?}");
     }
     for command in commands(&place) {

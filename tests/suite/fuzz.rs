@@ -9,6 +9,7 @@ use trueray::doubts::doubts;
 use trueray::effects::Effects;
 use trueray::engine::{Backend, Engine, render_picture};
 use trueray::film::{Encoded, Leniency, decode};
+use trueray::import::{Format, Frames, Import, Options};
 use trueray::limits;
 use trueray::precision::{Request, Selection, Tier};
 use trueray::scene::{foreign_kind, parse};
@@ -263,4 +264,42 @@ fn mended(mut bytes: Vec<u8>) -> Vec<u8> {
         at = end + 4;
     }
     bytes
+}
+
+/// Particles of every format, changed at random and read as each format: scenes that a file can hold, or errors.
+#[test]
+fn files_of_particles() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/import");
+    let read = |name: &str| {
+        let mut file = std::fs::read(folder.join(name)).unwrap();
+        // Most of a protein is like the rest.
+        file.truncate(4000);
+        file
+    };
+    let mut seeds: Vec<_> = ["benzene.xyz", "argon.lammpstrj", "spiral.csv", "globe.ply"].map(read).into();
+    let protein = std::fs::read(folder.join("gramicidin.pdb")).unwrap();
+    seeds.push(protein[protein.len() - 2000..].to_vec());
+    let entry = std::fs::read_to_string(folder.join("1yjp.cif")).unwrap();
+    let atoms = entry.find("loop_\n_atom_site.").unwrap();
+    seeds.push(format!("data_1\n{}", &entry[atoms..atoms + 2000]).into_bytes());
+    let binary = "ply\nformat binary_little_endian 1.0\nelement face 1\nproperty list uchar int i\nelement vertex 1\n\
+                  property float x\nproperty float y\nproperty double z\nend_header\n\0";
+    seeds.push([binary.as_bytes(), &[0; 16]].concat());
+    let formats = [Format::Xyz, Format::Lammps, Format::Pdb, Format::Mmcif, Format::Table, Format::Ply];
+    let options = [
+        Options { frames: Frames::All, ..Options::default() },
+        Options { frames: Frames::Last, coloring: "x".parse().unwrap(), ..Options::default() },
+    ];
+    let check = |bytes: Vec<u8>, options: &Options| {
+        for format in Format::of(&bytes).into_iter().chain(formats) {
+            for imported in Import::new("fuzz", format, &bytes[..], options.clone()) {
+                let parsed = imported.parsed;
+                prop_assert_eq!(parsed.scene.is_none(), parsed.errors > 0);
+                prop_assert!(parsed.scene.is_none_or(|scene| scene.check().is_ok()));
+            }
+        }
+        Ok(())
+    };
+    let strategy = (mutated(seeds), proptest::sample::select(options.to_vec()));
+    runner().run(&strategy, |(bytes, options)| check(bytes, &options)).unwrap();
 }

@@ -31,6 +31,7 @@ mod golden;
 mod grade;
 mod heads;
 mod house;
+mod import;
 mod keys;
 mod library;
 mod lists;

@@ -60,7 +60,8 @@ impl Work {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("scene.txt");
         std::fs::write(&path, text).unwrap();
-        let render_loop = Arc::new(RenderLoop::new(SceneFile::new(&path, scene(text)), start()));
+        let render_loop =
+            Arc::new(RenderLoop::new(SceneFile::new(&path, scene(text), trueray::import::Options::default()), start()));
         watch(Arc::clone(&render_loop.scene_file), Arc::clone(&render_loop.wake), Arc::clone(&render_loop.quit))
             .unwrap();
         let gpu = Arc::new(Mutex::new(None));
@@ -646,7 +647,8 @@ fn work_with(
     work.render_loop.wake.raise();
     work.thread.take().unwrap().join().unwrap();
     let path = work.folder.path().join("scene.txt");
-    work.render_loop = Arc::new(RenderLoop::new(SceneFile::new(&path, scene(SCENE)), start));
+    work.render_loop =
+        Arc::new(RenderLoop::new(SceneFile::new(&path, scene(SCENE), trueray::import::Options::default()), start));
     watch(
         Arc::clone(&work.render_loop.scene_file),
         Arc::clone(&work.render_loop.wake),

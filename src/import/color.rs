@@ -1,0 +1,80 @@
+//! The colours of particles.
+
+#![allow(clippy::unreadable_literal, reason = "colours are written as `rrggbb`")]
+
+use glam::DVec3;
+
+use super::columns::LEVELS;
+use super::elements::Element;
+use super::frame::Frame;
+use super::map::Map;
+use super::options::{ByColumn, Coloring};
+
+/// The colour of particles of which nothing else is known.
+const PLAIN: u32 = 0x7fa6cc;
+
+/// A colour as `0xrrggbb`.
+pub(super) fn hex_color(rgb: u32) -> DVec3 {
+    DVec3::from([16, 8, 0].map(|shift| f64::from(rgb >> shift & 0xff) / LEVELS))
+}
+
+/// A colour as `#rrggbb` or `rrggbb`.
+pub(super) fn hex_of(token: &[u8]) -> Option<DVec3> {
+    let digits = token.strip_prefix(b"#").unwrap_or(token);
+    let is_hex = digits.len() == 6 && digits.iter().all(u8::is_ascii_hexdigit);
+    let text = str::from_utf8(digits).ok().filter(|_| is_hex)?;
+    u32::from_str_radix(text, 16).ok().map(hex_color)
+}
+
+/// The least and the greatest value.
+pub(super) fn range_of(values: &[f64]) -> (f64, f64) {
+    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| (low.min(value), high.max(value)))
+}
+
+/// The colour of each particle by its number. `range` is that of the values, where they are not categories.
+pub(super) fn colors<'a>(frame: &'a Frame, coloring: &Coloring, range: (f64, f64)) -> Box<dyn Fn(usize) -> DVec3 + 'a> {
+    let plain = hex_color(PLAIN);
+    match coloring {
+        Coloring::Fixed(color) => {
+            let color = *color;
+            Box::new(move |_| color)
+        }
+        Coloring::Column(ByColumn { map, .. }) => {
+            let is_words = frame.words.len() > 0;
+            let map = map.unwrap_or(if is_words { Map::Categories } else { Map::Viridis });
+            let colors = map.colors();
+            if map == Map::Categories {
+                return Box::new(move |index| category(&colors, frame.values[index] as usize));
+            }
+            Box::new(move |index| mapped(&colors, frame.values[index], range))
+        }
+        Coloring::Auto if !frame.colors.is_empty() => {
+            let greatest = frame.colors.iter().fold(0.0, |greatest: f64, color| greatest.max(color.max_element()));
+            let levels = frame.levels.unwrap_or(if greatest > 1.0 { LEVELS } else { 1.0 });
+            Box::new(move |index| frame.colors[index] / levels)
+        }
+        Coloring::Auto | Coloring::Element if frame.kinds.is_empty() => Box::new(move |_| plain),
+        Coloring::Auto | Coloring::Element => {
+            let categories = Map::Categories.colors();
+            let elements = frame.elements.iter().enumerate();
+            let colors: Vec<_> = elements
+                .map(|(index, element)| element.map_or_else(|| category(&categories, index), Element::color))
+                .collect();
+            Box::new(move |index| colors[frame.kinds[index] as usize])
+        }
+    }
+}
+
+/// The colour of a category; later rounds of the palette are darker.
+fn category(colors: &[DVec3], index: usize) -> DVec3 {
+    const DARKER: f64 = 0.7;
+    colors[index % colors.len()] * DARKER.powf((index / colors.len()).min(4) as f64)
+}
+
+/// The colour of a value between the ends of a map; beyond them that of the end.
+fn mapped(colors: &[DVec3], value: f64, (low, high): (f64, f64)) -> DVec3 {
+    let part = if low == high { 0.5 } else { ((value - low) / (high - low)).clamp(0.0, 1.0) };
+    let at = part * (colors.len() - 1) as f64;
+    let below = (at as usize).min(colors.len() - 2);
+    colors[below].lerp(colors[below + 1], at - below as f64)
+}
