@@ -26,6 +26,7 @@ pub(super) struct Input {
 impl Input {
     /// Reads the file at `path`, or standard input for `-`; errors in the scene stay in `parsed`.
     pub(super) fn read(path: &Path) -> Result<Self, Failure> {
+        let _span = tracing::info_span!("read scene").entered();
         let start = Instant::now();
         let stdin = path == Path::new("-");
         let name = if stdin { "standard input".to_owned() } else { path.display().to_string() };

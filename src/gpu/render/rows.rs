@@ -79,6 +79,7 @@ impl GpuRenderer<'_, Rows> {
 
     /// Puts the pixels of `tiles` into `rgb`, whose first row is `first`.
     fn read_tiles(&mut self, work: &Work, tiles: &[[u32; 2]], first: u32, rgb: &mut [u8]) -> Result<Statuses, Error> {
+        let _span = tracing::info_span!("read back").entered();
         let start = Instant::now();
         let (width, dispatch_bits) = (self.size.0, self.dispatch_bits());
         let place = |pixels: &[u32]| place_tiles(pixels, dispatch_bits, tiles, first, width, rgb);
