@@ -129,6 +129,7 @@ impl CpuEngine {
         pixels: usize,
         action: impl FnOnce(&Reference<f64>) -> Result<Tally, Misuse>,
     ) -> Result<u64, gpu::Error> {
+        let _span = tracing::info_span!("trace by the reference", pixels).entered();
         let start = Instant::now();
         let tally = action(&self.reference)?;
         if stop::is_asked() {
@@ -176,6 +177,7 @@ impl<O: Output> DeviceEngine<'_, O> {
         if unsure.is_empty() && cut.is_empty() {
             return Ok(not_finite);
         }
+        let _span = tracing::info_span!("decide by the reference", pixels = unsure.len() + cut.len()).entered();
         let start = Instant::now();
         let reference = match (&self.verifier, &self.kept) {
             (Some(verifier), _) => verifier.reference(),
@@ -245,6 +247,7 @@ impl<'a, O: Output> Engine<'a, O> {
         options: &Options,
         verify: Verify,
     ) -> Result<Self, gpu::Error> {
+        let _span = tracing::info_span!("prepare").entered();
         let start = Instant::now();
         let (gpu, tier) = match backend {
             Backend::Device(gpu, tier) => (gpu, tier),

@@ -131,6 +131,7 @@ impl Verifier {
 
     /// `level` is asked for each of the pixels, in order.
     fn compare(&mut self, pixels: &[[u32; 2]], mut level: impl FnMut([u32; 2]) -> [u8; 3]) -> Result<(), Error> {
+        let _span = tracing::info_span!("verify", pixels = pixels.len()).entered();
         let start = Instant::now();
         let mut expected = vec![[0; 3]; pixels.len()];
         self.reference.pixels(pixels, &mut expected)?;

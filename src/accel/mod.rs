@@ -61,6 +61,7 @@ impl Acceleration {
 
     /// Likewise, as fine as `density` says.
     pub fn with_density(viewed: &ViewedScene, effects: EffectSet, rounding: Rounding, density: &Density) -> Self {
+        let _span = tracing::info_span!("make lists").entered();
         let (scene, camera) = (viewed.scene(), Camera::new(viewed));
         let enclosure = Enclosure::new(viewed, effects.has(Effect::Ellipsoids), rounding);
         let lights: Vec<DVec3> = scene.lights.iter().map(|light| light.position).collect();

@@ -23,6 +23,9 @@ const CLUSTERS: usize = 20;
 const SHRINK: f64 = 0.6;
 /// Spheres of the scenes that differ in their lights.
 const LIT_SPHERES: usize = 100;
+const DOME_SPHERES: usize = 10_000;
+/// The dome's radius; the spheres are within 40 of its middle.
+const DOME_RADIUS: f64 = 80.0;
 
 /// What a family's size counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -55,23 +58,27 @@ pub struct Family {
     pub axis: Axis,
     /// The sizes, growing.
     pub sizes: &'static [usize],
+    /// Spheres in a scene of this size.
+    count: fn(usize) -> usize,
     build: fn(usize) -> Scene,
 }
 
 /// All families, in the order in which they are measured.
-pub static FAMILIES: [Family; 7] = [
+pub static FAMILIES: [Family; 9] = [
     Family {
         name: "classic",
         summary: "five ellipsoids and three lights, as in the assignment's scenes",
         axis: Axis::Spheres,
         sizes: &[5],
+        count: |_| 5,
         build: |_| classic(),
     },
     Family {
         name: "spheres",
         summary: "spheres at random that cover about 60 % of the pixels, half of them mirrors, three lights",
         axis: Axis::Spheres,
-        sizes: &[10, 100, 1_000, 10_000, 100_000, 1_000_000],
+        sizes: &[10, 100, 1_000, 10_000, 100_000, 1_000_000, 4_000_000],
+        count: |size| size,
         build: |count| scene(count, &Look::PLAIN),
     },
     Family {
@@ -79,6 +86,7 @@ pub static FAMILIES: [Family; 7] = [
         summary: "the same with semi-axes that differ by up to 30 % from their mean",
         axis: Axis::Spheres,
         sizes: &[10, 100, 1_000, 10_000, 100_000],
+        count: |size| size,
         build: |count| scene(count, &Look { ellipsoids: true, ..Look::PLAIN }),
     },
     Family {
@@ -86,24 +94,39 @@ pub static FAMILIES: [Family; 7] = [
         summary: "the same, but every sphere is a mirror with Kr 0.8",
         axis: Axis::Spheres,
         sizes: &[10, 100, 1_000, 10_000, 100_000],
+        count: |size| size,
         build: |count| scene(count, &Look { mirrors: [0.8, 0.8], ..Look::PLAIN }),
     },
     Family {
         name: "lights",
         summary: "a hundred spheres at random with more and more lights around them",
         axis: Axis::Lights,
-        sizes: &[1, 4, 16, 64],
-        build: |count| {
-            let mut scene = scene(LIT_SPHERES, &Look::PLAIN);
-            (scene.lights, scene.light_names) = many_lights(count);
-            scene
-        },
+        sizes: &[1, 4, 16, 64, 256],
+        count: |_| LIT_SPHERES,
+        build: |count| lit(LIT_SPHERES, many_lights(count)),
+    },
+    Family {
+        name: "dome",
+        summary: "ten thousand spheres at random under a dome of lights, which is ambient occlusion by shadows alone",
+        axis: Axis::Lights,
+        sizes: &[1, 4, 16, 64, 256],
+        count: |_| DOME_SPHERES,
+        build: |count| lit(DOME_SPHERES, dome(count)),
+    },
+    Family {
+        name: "glass",
+        summary: "spheres at random, half of them of glass",
+        axis: Axis::Spheres,
+        sizes: &[10, 100, 1_000, 10_000, 100_000],
+        count: |size| size,
+        build: glass,
     },
     Family {
         name: "clustered",
         summary: "spheres in twenty clusters, dense towards their centres",
         axis: Axis::Spheres,
         sizes: &[100, 1_000, 10_000, 100_000],
+        count: |size| size,
         build: clustered,
     },
     Family {
@@ -111,6 +134,7 @@ pub static FAMILIES: [Family; 7] = [
         summary: "spheres at random and one huge sphere in their midst",
         axis: Axis::Spheres,
         sizes: &[10, 100, 1_000, 10_000, 100_000],
+        count: |size| size,
         build: |count| {
             let mut scene = scene(count, &Look::PLAIN);
             let huge = &mut scene.spheres[count / 2];
@@ -141,10 +165,7 @@ impl Family {
 
     /// Spheres in its scene of this size.
     pub fn spheres(&self, size: usize) -> usize {
-        match self.axis {
-            Axis::Spheres => size,
-            Axis::Lights => LIT_SPHERES,
-        }
+        (self.count)(size)
     }
 }
 
@@ -263,6 +284,21 @@ fn scene(count: usize, look: &Look) -> Scene {
     framed((0..count).map(one).collect())
 }
 
+/// Spheres at random in these lights.
+fn lit(spheres: usize, lights: (Vec<Light>, Names)) -> Scene {
+    let mut scene = scene(spheres, &Look::PLAIN);
+    (scene.lights, scene.light_names) = lights;
+    scene
+}
+
+fn glass(count: usize) -> Scene {
+    let mut scene = scene(count, &Look::PLAIN);
+    for sphere in scene.spheres.iter_mut().skip(1).step_by(2) {
+        (sphere.kt, sphere.eta) = (0.8, 1.5);
+    }
+    scene
+}
+
 /// The same room, lights and look with every sphere near one of a few centres, uniform in the distance from it.
 fn clustered(count: usize) -> Scene {
     let random = &mut Random::new(SEED, count as u64);
@@ -282,6 +318,19 @@ fn many_lights(count: usize) -> (Vec<Light>, Names) {
         let position = DVec3::new(random.within(-40.0, 40.0), random.within(-40.0, 40.0), random.within(0.0, 20.0));
         let color = DVec3::new(random.within(0.5, 1.0), random.within(0.5, 1.0), random.within(0.5, 1.0));
         Light { position: rounded_vector(position, 1e5), intensity: rounded_vector(color * 2.0 / count as f64, 1e5) }
+    };
+    ((0..count).map(one).collect(), names('l', count))
+}
+
+/// White lights at random on the half of a sphere around the room that the eye is in; together as bright as the three.
+fn dome(count: usize) -> (Vec<Light>, Names) {
+    let random = &mut Random::new(SEED, count as u64);
+    let middle = DVec3::new(0.0, 0.0, -f64::midpoint(DEPTHS[0], DEPTHS[1]));
+    let one = |_| {
+        let aside = random.unit() * DOME_RADIUS;
+        let position = middle + DVec3::new(aside.x, aside.y, aside.z.abs());
+        let intensity = DVec3::splat(rounded(2.0 / count as f64, 1e5));
+        Light { position: rounded_vector(position, 1e5), intensity }
     };
     ((0..count).map(one).collect(), names('l', count))
 }

@@ -1,5 +1,6 @@
 //! How fast: families of scenes of growing size, rendered in turn by the device and by the CPU reference.
 
+mod baseline;
 mod families;
 mod fit;
 mod measure;
@@ -9,6 +10,7 @@ mod report;
 mod table;
 mod tune;
 
+pub use baseline::{Change, Comparison, Former};
 pub use families::{Axis, FAMILIES, Family};
 pub use fit::growth_exponent;
 pub use measure::{Bench, BenchPlan, FamilyResult, Growth, Measured, RenderSetup, Renderer, SceneResult, bench};

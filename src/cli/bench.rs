@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
-use super::failure::{Failure, OUTPUT};
+use super::failure::{DIFFERENT, Failure, OK, OUTPUT, USAGE};
 use super::files::{command, save, seconds};
 use super::guard::Guard;
 use super::options::{DeviceOptions, PictureOptions};
@@ -12,7 +12,7 @@ use super::progress::{Progress, Style};
 use super::reports::Reports;
 use super::signals::{say_last, say_nothing};
 use super::tune::run_tune;
-use crate::bench::{Bench, BenchPlan, FAMILIES, Family, RenderSetup, bench, csv, heads, html};
+use crate::bench::{Bench, BenchPlan, Comparison, FAMILIES, Family, Former, RenderSetup, bench, csv, heads, html};
 use crate::threads::lock;
 
 /// Arguments of `trueray bench`.
@@ -37,6 +37,12 @@ pub(super) struct Args {
     /// Leave out the CPU reference
     #[arg(long)]
     no_cpu: bool,
+    /// Hold every scene against an earlier run, which --json has written: ratios of the medians with their 95 % intervals
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["list", "write", "tune"])]
+    baseline: Option<PathBuf>,
+    /// End with code 1 where a scene is slower than in the baseline by more than this, for sure
+    #[arg(long, value_name = "PERCENT", requires = "baseline", value_parser = percent)]
+    fail_slower: Option<f64>,
     #[command(flatten)]
     picture: PictureOptions,
     #[command(flatten)]
@@ -54,21 +60,24 @@ pub(super) struct Args {
     progress: Style,
 }
 
-pub(super) fn run(args: &Args) -> Result<(), Failure> {
+/// Measures, and returns the exit code.
+pub(super) fn run(args: &Args) -> Result<u8, Failure> {
     let families = if args.families.is_empty() { FAMILIES.iter().collect() } else { args.families.clone() };
     if args.tune {
         args.reports.check(&mut Guard::default())?;
         return run_tune(&args.picture, &args.device, args.max_spheres, args.runs as usize, &args.reports)
+            .map(|()| OK)
             .map_err(Failure::without_cpu);
     }
     if args.list {
         list(&families);
-        return Ok(());
+        return Ok(OK);
     }
     if let Some(folder) = &args.write {
-        return write_scenes(args, &families, folder);
+        return write_scenes(args, &families, folder).map(|()| OK);
     }
-    args.reports.check(&mut Guard::default())?;
+    args.reports.check(&mut Guard::new(&args.baseline))?;
+    let former = args.baseline.as_deref().map(read_former).transpose()?;
     let gpu = args.device.open()?;
     let settings = args.picture.settings()?;
     let setup = RenderSetup {
@@ -101,14 +110,41 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     progress.finish();
     say_nothing();
     args.reports.show(&format!("\n{}\n{}\n", bench.growth_report(), bench.head()));
-    write(&args.reports, &bench)
+    let compared = former.map(|former| Comparison::new(&former, &bench)).transpose();
+    write(&args.reports, &bench, compared.as_ref().ok().and_then(Option::as_ref))?;
+    let Some(comparison) = compared.map_err(|why| unusable(args.baseline.as_deref(), &why))? else { return Ok(OK) };
+    let part = args.fail_slower.unwrap_or(NOTICED);
+    args.reports.show(&format!("\n{}", comparison.report(part)));
+    let fails = args.fail_slower.is_some() && comparison.rows.iter().any(|row| row.is_slower(part));
+    Ok(if fails { DIFFERENT } else { OK })
 }
 
-fn write(reports: &Reports, bench: &Bench) -> Result<(), Failure> {
+/// What counts as a change where the user names nothing.
+const NOTICED: f64 = 0.05;
+
+/// Percent, with or without the sign, as a part.
+fn percent(text: &str) -> Result<f64, String> {
+    let number = text.trim().trim_end_matches('%').trim_end();
+    let percent: f64 = number.parse().map_err(|_| "not a number of percent, such as 5 or 5%".to_owned())?;
+    if percent.is_finite() && percent >= 0.0 { Ok(percent / 100.0) } else { Err("at least 0".into()) }
+}
+
+fn read_former(path: &Path) -> Result<Former, Failure> {
+    let text = std::fs::read(path).map_err(|error| unusable(Some(path), &error.to_string()))?;
+    serde_json::from_slice(&text)
+        .map_err(|error| unusable(Some(path), &format!("it is not what `trueray bench --json` writes: {error}")))
+}
+
+fn unusable(path: Option<&Path>, why: &str) -> Failure {
+    let name = path.map(crate::words::visible_path).unwrap_or_default();
+    Failure::new(USAGE, format!("cannot use the baseline {name}: {why}"))
+}
+
+fn write(reports: &Reports, bench: &Bench, comparison: Option<&Comparison>) -> Result<(), Failure> {
     reports.write(
         || html(bench, &command()),
         || csv(bench),
-        || serde_json::json!({ "command": command(), "bench": bench }),
+        || serde_json::json!({ "command": command(), "bench": bench, "comparison": comparison }),
     )
 }
 
@@ -119,7 +155,7 @@ fn interrupted(measured: Option<&Bench>, reports: &Reports) {
         return;
     };
     errln!("trueray: interrupted; the scenes that were measured are written");
-    if let Err(failure) = write(reports, bench) {
+    if let Err(failure) = write(reports, bench, None) {
         failure.report();
     }
 }

@@ -82,6 +82,7 @@ pub(super) struct Input {
 impl Input {
     /// Reads the file at `path`, or standard input for `-`; errors in the scene stay in `parsed`.
     pub(super) fn read(path: &Path, reading: &Reading) -> Result<Self, Failure> {
+        let _span = tracing::info_span!("read scene").entered();
         let start = Instant::now();
         let opened = Opened::open(path)?;
         let name = opened.name.clone();

@@ -36,6 +36,7 @@ mod signals;
 mod stats;
 mod stress;
 mod study;
+mod timeline;
 mod tune;
 mod verify;
 mod version;
@@ -172,7 +173,7 @@ pub fn run() -> ExitCode {
         Some(Command::Study(args)) => study::run(&args).map(ok),
         Some(Command::Stress(args)) => stress::run(&args).map_err(Failure::without_cpu),
         Some(Command::Conform(args)) => conform::run(&args).map_err(Failure::without_cpu),
-        Some(Command::Bench(args)) => bench::run(&args).map(ok),
+        Some(Command::Bench(args)) => bench::run(&args),
         Some(Command::Import(args)) => import::run(&args).map(ok),
         Some(Command::Export(args)) => export::run(&args).map(ok),
         #[cfg(feature = "view")]

@@ -20,6 +20,7 @@ use super::particles::ParticleOptions;
 use super::progress::{Progress, Style};
 use super::sampling::{Choice, SamplingOptions};
 use super::stats::{Sampled, Stats, Verified, peak_memory_mib};
+use super::timeline::Timeline;
 use crate::effects::Effects;
 use crate::engine::{
     Backend, Engine, Options, Output, Pixels, Rays, Stages, Times, device_name, ms, render_bands, render_partial,
@@ -83,6 +84,9 @@ pub(super) struct Args {
     /// which stage; with --precision certified, or of the CPU reference. `trueray verify` reads it
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     certificate: Option<PathBuf>,
+    /// Write when each step of the run began and ended, on which thread: a trace for ui.perfetto.dev or chrome://tracing
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    timeline: Option<PathBuf>,
     /// Leave the rays out of the statistics: counting them takes time of its own
     #[arg(long, help_heading = "Output")]
     no_ray_counts: bool,
@@ -121,7 +125,8 @@ fn render_all(args: &Args) -> Result<u8, Failure> {
     let settings = args.picture.settings()?;
     let reading = args.particles.one_frame(args.picture.resolution())?;
     let mut guard = Guard::new(&args.scenes);
-    guard.options([("--certificate", &args.certificate)])?;
+    guard.options([("--certificate", &args.certificate), ("--timeline", &args.timeline)])?;
+    let timeline = args.timeline.as_deref().map(Timeline::begin);
     args.aov.check_file(args.scenes.len(), &mut guard)?;
     if let Some(path) = args.stats_json.as_deref().filter(|path| *path != Path::new("-")) {
         check_place(path)?;
@@ -136,7 +141,10 @@ fn render_all(args: &Args) -> Result<u8, Failure> {
         let ahead = scenes[0].as_ref().ok().and_then(|loaded| args.ahead(&loaded.scene, &settings));
         (scenes, ahead)
     };
-    let ((scenes, ahead), (gpu, open_time)) = at_once(read, || (args.device.open_with(args.quiet), start.elapsed()));
+    let ((scenes, ahead), (gpu, open_time)) = at_once(read, || {
+        let _span = tracing::info_span!("open device").entered();
+        (args.device.open_with(args.quiet), start.elapsed())
+    });
     let ready_time = start.elapsed();
 
     // Files in each other's way are the worse trouble: nothing is rendered.
@@ -178,6 +186,7 @@ fn render_all(args: &Args) -> Result<u8, Failure> {
     if let Some(path) = &args.stats_json {
         write_stats(path, &all_stats)?;
     }
+    timeline.map_or(Ok(()), Timeline::write)?;
     // The files are complete, and the process ends: closing a device takes some milliseconds and gains nothing. But drivers
     // may still be writing compiled kernels to their cache; where any can have been compiled, they are waited for.
     let is_software = gpu.as_ref().is_some_and(|gpu| gpu.device.info.kind == DeviceKind::Software);
@@ -236,6 +245,7 @@ fn render_one(
     guard: &mut Guard,
     [open_time, ready_time]: [Duration; 2],
 ) -> Result<Option<Stats>, Failure> {
+    let _span = tracing::info_span!("picture", scene = %loaded.name).entered();
     let start = Instant::now();
     if !args.quiet {
         print_doubts(&loaded.name, &args.picture.doubts(&loaded.scene, settings));
@@ -280,6 +290,7 @@ fn render_one(
             let Choice { density, fill } = *choice;
             let samples = Samples::new((width, height), &density)?;
             let picture = render_partial(engine, backend, &samples, fill, |part| progress.set(part))?;
+            let _span = tracing::info_span!("write rows").entered();
             let start = Instant::now();
             writer.write_rows(&picture.rgb)?;
             beside.add(&picture.rgb);
@@ -289,6 +300,7 @@ fn render_one(
             picture.not_finite
         }
         Renderer::Whole(engine) => render_bands(engine, |band| {
+            let _span = tracing::info_span!("write rows").entered();
             let start = Instant::now();
             writer.write_rows(band.rgb)?;
             write_time += start.elapsed();
@@ -304,7 +316,7 @@ fn render_one(
         Renderer::InPart(engine, _) => Noted::by(engine),
     };
     let finishing = Instant::now();
-    writer.finish()?;
+    tracing::info_span!("finish file").in_scope(|| writer.finish())?;
     progress.finish();
     write_time += finishing.elapsed();
 

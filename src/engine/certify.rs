@@ -178,6 +178,7 @@ impl<'a> Certifier<'a> {
 
 /// `double` for pixels of `kept`; what that takes is added to `took`.
 fn prepared<'a>(gpu: &'a Gpu, kept: &KeptScene, took: &mut Duration) -> Result<GpuRenderer<'a, Pixels>, gpu::Error> {
+    let _span = tracing::info_span!("prepare double").entered();
     let start = Instant::now();
     let options = Options { certified: true, ..Options::default() };
     let double = GpuRenderer::with(gpu, &kept.viewed(), &kept.effects, Tier::Double, &options);

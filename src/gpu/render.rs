@@ -253,21 +253,25 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
             0.0
         };
         specialisation.shared_surfaces = indices.is_some();
+        let packing = tracing::info_span!("pack tables").entered();
         let packed = Packed::new(viewed, effects, kernel, &accel, indices, tangent_margin, options.certified);
         if specialisation.variant().copies() && !copies_fit(&gpu.device, tables, &packed, &accel) {
             specialisation.schedule = Schedule::AtOnce;
         }
         let list_tables = list_contents(&accel);
         check_fits(&gpu.device, tables, &packed, &list_tables)?;
+        drop(packing);
         let cover = accel.screen.cover();
         let picture_tiles = u64::from(scene.width.div_ceil(TILE)) * u64::from(scene.height.div_ceil(TILE));
         let covered_tiles = picture_tiles.min(cover.most());
         // Lists that nobody wants any more go before the spheres take memory on the device.
+        let uploading = tracing::info_span!("upload tables").entered();
         let mut resources = list_resources(&gpu.device, tables, &list_tables)?;
         resources.extend(copy_resources(&gpu.device, tables, &packed, &accel, &specialisation)?);
         drop(list_tables);
         let kept = keep(accel);
         resources.extend(scene_resources(&gpu.device, tables, &packed, &specialisation)?);
+        drop(uploading);
         let samples = u64::from(settings.samples_per_side * settings.samples_per_side);
         let tests_per_pixel = samples
             * (scene.spheres.len().min(64) as u64 + 1)
@@ -360,10 +364,13 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         let (pipelines, used_before) = gpu.pipelines(specialisation)?;
         let capacity = self.capacity();
         let has_bounces = self.max_depth > 0;
+        let reserving = tracing::info_span!("reserve buffers").entered();
         let work = gpu.device.checked("reserving buffers", || {
             Work::new(gpu, pipelines, resources, capacity, specialisation, has_bounces)
         })?;
+        drop(reserving);
         if !used_before {
+            let _span = tracing::info_span!("first dispatch").entered();
             self.submit(&work, &[[0, 0]])?;
         }
         self.times.compile = start.elapsed();
@@ -415,6 +422,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
     }
 
     fn dispatch(&mut self, work: &Work, tiles: &[[u32; 2]]) -> Result<Duration, Error> {
+        let _span = tracing::info_span!("dispatch", places = tiles.len()).entered();
         let start = Instant::now();
         self.submit(work, tiles)?;
         let took = start.elapsed();

@@ -35,6 +35,8 @@ fn scenes_are_the_same_for_ever() {
         ("lights", 16, 0x4a71_287d_772a_c716),
         ("clustered", 1000, 0x8b95_0a2d_a8ed_5bea),
         ("huge", 1000, 0x5f13_67bd_4108_b833),
+        ("dome", 16, 0x3be4_bc7c_2136_21b5),
+        ("glass", 1000, 0xb2ba_b9a9_2575_b802),
     ];
     let found = fingerprints.map(|(name, size, _)| (name, size, hash(&family(name).scene(size).to_string())));
     assert_eq!(found, fingerprints);
@@ -258,6 +260,36 @@ fn the_program_measures_lists_and_writes() {
 
     let (_, why) = run("bench --families rings", 2);
     assert!(why.contains("there are classic, spheres"), "{why}");
+
+    // Beside an earlier run: as fast as it is, and beside one that took a hundredth of the time.
+    let baseline = std::fs::read_to_string(folder.path().join("r.json")).unwrap();
+    let mut former: serde_json::Value = serde_json::from_str(&baseline).unwrap();
+    for scene in former["bench"]["families"][0]["scenes"].as_array_mut().unwrap() {
+        let runs = scene["measured"][0]["picture"]["runs"].as_array_mut().unwrap();
+        runs.iter_mut().for_each(|run| *run = (run.as_f64().unwrap() / 100.0).into());
+    }
+    std::fs::write(folder.path().join("fast.json"), former.to_string()).unwrap();
+    let (table, _) = run(&format!("bench --families spheres {small} --baseline r.json --fail-slower 10000%"), 0);
+    assert!(table.contains("95 % interval") && table.contains("as before"), "{table}");
+    let (table, _) = run(&format!("bench --families spheres {small} --baseline fast.json"), 0);
+    assert!(table.contains("  slower"), "{table}");
+    run(&format!("bench --families spheres {small} --baseline fast.json --fail-slower 5 --json both.json"), 1);
+    let both = std::fs::read_to_string(folder.path().join("both.json")).unwrap();
+    let both: serde_json::Value = serde_json::from_str(&both).unwrap();
+    assert!(both["comparison"]["rows"][1]["ratio"].as_f64().unwrap() > 5.0);
+    for (arguments, why) in [
+        ("--families classic --baseline r.json", "none of the scenes"),
+        ("--families spheres --max-depth 1 --baseline r.json", "other conventions, samples or depth"),
+        ("--families spheres --baseline scenes/huge-10.txt", "not what `trueray bench --json` writes"),
+        ("--families spheres --baseline none.json", "none.json"),
+        ("--families spheres --baseline r.json --fail-slower fast", "percent"),
+        ("--families spheres --fail-slower 5", "--baseline"),
+    ] {
+        let (_, said) = run(&format!("bench {small} {arguments}"), 2);
+        assert!(said.contains(why), "{arguments}: {said}");
+    }
+    run(&format!("bench --families spheres {small} --baseline r.json --json r.json"), 6);
+
     run("bench --runs 0", 2);
     run("bench --report nowhere/r.html", 6);
     run("bench --families classic --write r.html", 6);

@@ -238,6 +238,7 @@ fn output_that_cannot_be_written_is_its_own_code() {
     );
     assert_eq!(std::fs::read_to_string(place.path().join("scene.txt")).unwrap(), SCENE);
     assert_exit(&place.run("render --device cpu --stats-json missing/stats.json scene.txt"), 6, "missing/stats.json");
+    assert_exit(&place.run("render --device cpu --timeline missing/t.json scene.txt"), 6, "missing/t.json");
 }
 
 #[test]
@@ -280,6 +281,42 @@ fn stats_tell_device_effects_rays_and_times() {
     assert_exit(&place.run("render --device cpu --stats-json stats.json --no-ray-counts scene.txt"), 0, "");
     assert!(std::fs::read_to_string(place.path().join("stats.json")).unwrap().contains("\"rays\": null"));
     assert_exit(&place.run("render --device cpu --stats --explain scene.txt"), 0, "effects (depth 0)");
+}
+
+#[test]
+fn a_timeline_has_every_step_from_begin_to_end() {
+    let place = Folder::new(SCENE);
+    let steps = |device: &str| {
+        assert_exit(&place.run(&format!("render --device {device} --timeline t.json scene.txt")), 0, "");
+        let text = std::fs::read_to_string(place.path().join("t.json")).unwrap();
+        let events: Vec<serde_json::Value> = serde_json::from_str(&text).unwrap();
+        let of_phase = |phase: &str| {
+            let events = events.iter().filter(|event| event["ph"] == phase);
+            let mut names: Vec<_> = events.map(|event| event["name"].as_str().unwrap().to_owned()).collect();
+            names.sort();
+            names
+        };
+        assert_eq!(of_phase("B"), of_phase("E"));
+        let name = |thread: &serde_json::Value| thread["args"]["name"].as_str().map(str::to_owned);
+        assert!(events.iter().filter(|event| event["ph"] == "M").any(|thread| name(thread).is_some()));
+        of_phase("B")
+    };
+    let assert_has = |steps: &[String], expected: &[&str]| {
+        for step in expected {
+            assert!(steps.iter().any(|own| own == step), "{step} in {steps:?}");
+        }
+    };
+    let everywhere = ["read scene", "picture", "prepare", "write rows", "finish file"];
+    let on_cpu = steps("cpu");
+    assert_has(&on_cpu, &everywhere);
+    assert_has(&on_cpu, &["trace by the reference"]);
+    if gpu("a_timeline_has_every_step_from_begin_to_end").is_some() {
+        let on_device = steps("gpu");
+        assert_has(&on_device, &everywhere);
+        let device = ["open device", "load drivers", "create device", "make lists", "upload tables", "parse shader"];
+        assert_has(&on_device, &device);
+        assert_has(&on_device, &["translate kernel", "compile kernel", "first dispatch", "dispatch", "read back"]);
+    }
 }
 
 #[test]

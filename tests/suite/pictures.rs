@@ -210,11 +210,11 @@ fn kernels_are_parsed_ahead_for_the_picture_that_follows() {
         let tier = Selection::of(&scene.viewed(&settings), &effects, precision::Request::Auto, own.ladder()).tier;
         let (expected, _) = gpu_picture(&own, tier, &scene, &settings, &effects);
         for ahead in [ahead_of(&scene), ahead_of(&glass)].into_iter().flatten() {
-            let variant = ahead.variant();
+            let specialisation = *ahead.specialisation();
             let gpu = Gpu::open(&Choice::Auto).unwrap().having(Some(ahead));
-            if is_expected && variant.refraction.is_none() {
+            if is_expected && specialisation.refraction.is_none() {
                 let renderer = GpuRenderer::new(&gpu, &scene.viewed(&settings), &effects, tier).unwrap();
-                assert_eq!(renderer.variant(), variant, "{}", short(&file));
+                assert_eq!(renderer.specialisation(), &specialisation, "{}", short(&file));
             }
             assert!(gpu_picture(&gpu, tier, &scene, &settings, &effects).0 == expected, "{}", short(&file));
         }

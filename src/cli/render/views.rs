@@ -24,6 +24,7 @@ use crate::cli::guard::Guard;
 use crate::cli::input::Loaded;
 use crate::cli::named::check_named;
 use crate::cli::output::err;
+use crate::cli::timeline::Timeline;
 use crate::engine::render_bands;
 use crate::film::{Format, Target};
 use crate::gpu::{self, USUAL_KERNELS};
@@ -103,6 +104,7 @@ impl Options {
 pub(super) fn run(args: &Args) -> Result<u8, Failure> {
     check(args)?;
     let settings = args.picture.settings()?;
+    let timeline = args.timeline.as_deref().map(Timeline::begin);
     let start = Instant::now();
     let read = || {
         let loaded = Loaded::read(&args.scenes[0], args.quiet)?;
@@ -120,6 +122,7 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
         check_place(path)?;
         guard.output("--stats-json", path)?;
     }
+    guard.options([("--timeline", &args.timeline)])?;
     let jobs = jobs(args, &loaded, frames, &mut guard)?;
     let (name, total) = (loaded.name.clone(), jobs.len() as u32);
     let stop = AtomicBool::new(false);
@@ -131,6 +134,7 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
     if let Some(path) = &args.stats_json {
         write_stats(path, &stats)?;
     }
+    timeline.map_or(Ok(()), Timeline::write)?;
     Ok(code)
 }
 

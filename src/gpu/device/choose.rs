@@ -64,6 +64,7 @@ fn adapters() -> Result<(wgpu::Instance, Adapters), Error> {
     {
         return Err(Error::NotFound("WGPU_BACKEND leaves out Vulkan, the only backend of this program".into()));
     }
+    let _span = tracing::info_span!("load drivers").entered();
     let _call = Call::begin();
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends: wgpu::Backends::VULKAN,

@@ -72,6 +72,7 @@ impl Device {
     }
 
     fn open_adapter(info: DeviceInfo, adapter: &wgpu::Adapter, offer: Offer, units_off: u32) -> Result<Self, Error> {
+        let _span = tracing::info_span!("create device").entered();
         let shares_memory = matches!(info.kind, DeviceKind::Software | DeviceKind::Integrated);
         let mut features = wgpu::Features::SHADER_F64
             | wgpu::Features::SHADER_INT64

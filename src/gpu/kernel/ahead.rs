@@ -1,8 +1,9 @@
 //! What can be done for a picture before there is a device to do it on: opening one takes longer than reading most scenes.
 
+use super::entry::TRACE_TILES;
 use super::specialisation::Specialisation;
 use super::spirv::ParsedModule;
-use super::variant::{Kernel, Tables, Variant};
+use super::variant::{Kernel, Tables};
 use crate::accel::Acceleration;
 use crate::effects::Effects;
 use crate::precision::{Request, Selection, Tier};
@@ -16,11 +17,11 @@ pub(crate) const SOFTWARE_LADDER: [Tier; 3] = [Tier::Fast, Tier::Double, Tier::R
 /// With more spheres, looking at the scene takes longer than a device takes to open.
 const MAX_SPHERES: usize = 2000;
 
-/// The kernels of a picture as they most likely will be, parsed. Where they turn out to be others, nothing is lost but the time of
-/// a thread that had nothing else to do.
+/// The kernels of a picture as they most likely will be, parsed, and the largest of them translated. Where they turn out to be others,
+/// nothing is lost but the time of a thread that had nothing else to do.
 #[derive(Debug)]
 pub struct Ahead {
-    variant: Variant,
+    specialisation: Specialisation,
     module: ParsedModule,
 }
 
@@ -34,19 +35,22 @@ impl Ahead {
         let selection = Selection::of(viewed, effects, request, &SOFTWARE_LADDER);
         let kernel = Kernel::Tier(selection.tier);
         let grid = Acceleration::grid_of(viewed, effects.set, kernel.rounding(), &tuning.density);
-        let specialisation =
-            Specialisation::new(viewed, effects, kernel, &tuning, Tables::Stored).with_grid(grid.as_ref(), &tuning);
+        let specialisation = Specialisation {
+            certified: selection.certified,
+            ..Specialisation::new(viewed, effects, kernel, &tuning, Tables::Stored).with_grid(grid.as_ref(), &tuning)
+        };
         let module = ParsedModule::new(&specialisation.module()).ok()?;
-        Some(Self { variant: specialisation.variant(), module })
+        let module = module.with_translation(TRACE_TILES, specialisation.constants()).ok()?;
+        Some(Self { specialisation, module })
     }
 
     /// Which kernels these are.
-    pub fn variant(&self) -> Variant {
-        self.variant
+    pub fn specialisation(&self) -> &Specialisation {
+        &self.specialisation
     }
 
     /// The module of these kernels, if it is the one.
     pub(super) fn module(&self, specialisation: &Specialisation) -> Option<&ParsedModule> {
-        (self.variant == specialisation.variant()).then_some(&self.module)
+        (self.specialisation.variant() == specialisation.variant()).then_some(&self.module)
     }
 }

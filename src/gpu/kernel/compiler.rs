@@ -24,12 +24,19 @@ impl Compiler<'_> {
         entry_point: &str,
         constants: &[(&str, f64)],
     ) -> Result<(wgpu::ShaderModule, Vec<Binding>), Error> {
-        let specialised = module.specialised(entry_point, constants).map_err(Error::Shader)?;
-        let bindings = Binding::all(&specialised).map_err(Error::Shader)?;
-        if !self.device.takes_spirv {
-            return Ok((self.translated(specialised)?, bindings));
-        }
-        let mut words = module.spirv(&specialised, entry_point).map_err(Error::Shader)?;
+        let _span = tracing::info_span!("translate kernel", kernel = %entry_point).entered();
+        let (bindings, mut words) = if let Some(ahead) = module.translation(entry_point, constants)
+            && self.device.takes_spirv
+        {
+            (Binding::all(&ahead.module).map_err(Error::Shader)?, ahead.words.clone())
+        } else {
+            let specialised = module.specialised(entry_point, constants).map_err(Error::Shader)?;
+            let bindings = Binding::all(&specialised).map_err(Error::Shader)?;
+            if !self.device.takes_spirv {
+                return Ok((self.translated(specialised)?, bindings));
+            }
+            (bindings, module.spirv(&specialised, entry_point).map_err(Error::Shader)?)
+        };
         if self.device.units_off > 0 {
             words = made_inexact(words, self.device.units_off).map_err(Error::Shader)?;
         }

@@ -62,6 +62,7 @@ impl Pipeline {
             count: None,
         };
         let entries: Vec<_> = bindings.iter().map(entry).collect();
+        let _span = tracing::info_span!("compile kernel", kernel = %entry_point).entered();
         device.checked("compiling the kernels", || {
             let descriptor = wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries };
             let layout = device.raw.create_bind_group_layout(&descriptor);

@@ -28,15 +28,45 @@ pub struct ParsedModule {
     info: ModuleInfo,
     /// Whether drivers may fuse, reorder and leave out operations.
     contractible: bool,
+    /// The kernel that will most likely be asked for.
+    translation: Option<Translation>,
+}
+
+/// One kernel of a module.
+#[derive(Debug)]
+pub(super) struct Translation {
+    entry_point: &'static str,
+    constants: Vec<(&'static str, f64)>,
+    /// Its module with these constants.
+    pub(super) module: naga::Module,
+    /// Its SPIR-V.
+    pub(super) words: Vec<u32>,
 }
 
 impl ParsedModule {
     /// Parses `module`; an error names the file and line.
     pub fn new(module: &Module) -> Result<Self, String> {
+        let _span = tracing::info_span!("parse shader").entered();
         let module = module.parse()?;
         // What has constants is validated with them.
         let info = validated(&module, ValidationFlags::empty())?;
-        Ok(Self { module, info, contractible: false })
+        Ok(Self { module, info, contractible: false, translation: None })
+    }
+
+    /// With one kernel translated, before there is a device to ask for it.
+    pub(super) fn with_translation(
+        self,
+        entry_point: &'static str,
+        constants: Vec<(&'static str, f64)>,
+    ) -> Result<Self, String> {
+        let module = self.specialised(entry_point, &constants)?;
+        let words = self.spirv(&module, entry_point)?;
+        Ok(Self { translation: Some(Translation { entry_point, constants, module, words }), ..self })
+    }
+
+    /// The translation of this kernel, if it is the one that there is.
+    pub(super) fn translation(&self, entry_point: &str, constants: &[(&str, f64)]) -> Option<&Translation> {
+        self.translation.as_ref().filter(|it| it.entry_point == entry_point && it.constants == constants)
     }
 
     /// From now on drivers may fuse, reorder and leave out operations: for study only.

@@ -69,6 +69,7 @@ impl GpuRenderer<'_, Pixels> {
         pixels: &[[u32; 2]],
         colors: &mut [[u8; 3]],
     ) -> Result<Statuses, Error> {
+        let _span = tracing::info_span!("read back").entered();
         let start = Instant::now();
         let dispatch_bits = self.dispatch_bits();
         let statuses = work.pixels.read(&self.gpu.device, places.len(), |values| {

@@ -84,6 +84,7 @@ impl GpuRenderer<'_, Rows> {
 
     /// Puts the pixels of `tiles` into `rgb`, the rows of `area`.
     fn read_tiles(&mut self, work: &Work, tiles: &[[u32; 2]], area: Area, rgb: &mut [u8]) -> Result<Statuses, Error> {
+        let _span = tracing::info_span!("read back").entered();
         let start = Instant::now();
         let dispatch_bits = self.dispatch_bits();
         let place = |pixels: &[u32]| place_tiles(pixels, dispatch_bits, tiles, area, rgb);

@@ -97,6 +97,7 @@ impl<'a> Preparer<'a> {
     }
 
     fn prepared(&mut self, Job { number, frame, path, format }: Job) -> Result<Option<Prepared<'a>>, Failure> {
+        let _span = tracing::info_span!("prepare frame", frame = number).entered();
         let start = Instant::now();
         let (args, gpu) = (self.args, self.gpu);
         let source = match &frame.scene {

@@ -73,6 +73,7 @@ impl<'a> Writer<'a> {
             }
             Step::Rows(rgb) => {
                 let Some(File { number, path, mut writer, took }) = self.file.take() else { return };
+                let _span = tracing::info_span!("write rows").entered();
                 let start = Instant::now();
                 let written = writer.write_rows(&rgb).map(|()| writer);
                 let written = written.map_err(|error| Failure::from(error).of(&frame_name(number)));
@@ -81,6 +82,7 @@ impl<'a> Writer<'a> {
             }
             Step::End { stats, cut, start } => {
                 let Some(File { number, path, writer, took }) = self.file.take() else { return };
+                let _span = tracing::info_span!("finish file").entered();
                 let finishing = Instant::now();
                 let finished = writer.finish().map_err(|error| Failure::from(error).of(&frame_name(number)));
                 if self.noted(finished).is_some() {
