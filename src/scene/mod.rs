@@ -14,5 +14,5 @@ pub(crate) use diagnostics::{Collector, Detail, Line, Location, Span, Topic, ren
 pub use diagnostics::{Diagnostic, Omitted, Severity};
 pub use foreign::foreign_kind;
 pub use model::{Light, MAX_RESOLUTION, Names, Scene, Sphere, Window, resolution};
-pub use parse::{Parsed, parse};
 pub(crate) use parse::{Fault, first_line, is_statement, parse_number};
+pub use parse::{Parsed, parse};

@@ -313,3 +313,26 @@ fn tables_as_other_programs_write_them_are_read() {
         Frame { scene: Some(PathBuf::from("folder/a \"b\", c.txt")), ..Frame::seen_by(view([1.5, 0.0, 0.0], None)) };
     assert_eq!(frames, [first, Frame::seen_by(View::FILE)]);
 }
+
+/// Frames that are there stay, the missing one comes, and one of another picture is refused. The reader of a table and of particles are
+/// one option away from each other.
+#[test]
+fn frames_are_resumed_and_particles_turn() {
+    let folder = Folder::new();
+    folder.render("scene.txt --turntable 3 --resume -o a_%d.png", 0, "3 frames");
+    let first = fs::read(folder.path("a_1.png")).unwrap();
+    fs::remove_file(folder.path("a_2.png")).unwrap();
+    let stamp = || fs::metadata(folder.path("a_1.png")).unwrap().modified().unwrap();
+    let before = stamp();
+    folder.render("scene.txt --turntable 3 --resume -o a_%d.png", 0, "2 frames there already");
+    assert_eq!((stamp(), fs::read(folder.path("a_1.png")).unwrap()), (before, first));
+    assert!(folder.path("a_2.png").is_file());
+    folder.render("scene.txt --turntable 4 --resume -o a_%d.png", 6, "frame 2: ");
+    folder.render("scene.txt --turntable 3 --tile 0/2 -o b_%d.png", 2, "do not go with --crop or --tile");
+
+    folder.write("water.xyz", "3\n\nO 0 0 0\nH 0.96 0 0\nH -0.24 0.93 0\n");
+    folder.render("water.xyz --turntable 2 --radius 0.5 --res 32x24 -o w_%d.png", 0, "2 frames");
+    folder.render("water.xyz --radius 0.5 --res 32x24 -o single.png", 0, "");
+    assert_eq!(folder.picture("w_1.png"), folder.picture("single.png"));
+    assert_ne!(folder.picture("w_2.png"), folder.picture("single.png"));
+}

@@ -104,10 +104,11 @@ impl Options {
 pub(super) fn run(args: &Args) -> Result<u8, Failure> {
     check(args)?;
     let settings = args.picture.settings()?;
+    let reading = args.particles.one_frame(args.picture.resolution())?;
     let timeline = args.timeline.as_deref().map(Timeline::begin);
     let start = Instant::now();
     let read = || {
-        let loaded = Loaded::read(&args.scenes[0], args.quiet)?;
+        let loaded = Loaded::read(&args.scenes[0], &reading, args.quiet)?;
         let frames = args.views.chosen(args.views.all(args, &loaded)?)?;
         let ahead = args.ahead(&loaded.scene, &settings);
         Ok::<_, Failure>((loaded, frames, ahead))

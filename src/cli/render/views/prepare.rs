@@ -178,7 +178,8 @@ fn other<'s>(kept: &'s mut Option<(PathBuf, Source)>, path: &Path, args: &Args) 
     if kept.as_ref().is_none_or(|(known, _)| known != path) {
         // The last one goes before the next takes memory.
         *kept = None;
-        let loaded = Loaded::read(path, args.quiet)?;
+        let reading = args.particles.one_frame(args.picture.resolution())?;
+        let loaded = Loaded::read(path, &reading, args.quiet)?;
         *kept = Some((path.to_owned(), Source::new(loaded, args.picture.resolution())));
     }
     kept.as_mut().map(|(_, source)| source).ok_or_else(|| Failure::new(SCENE, ""))
