@@ -143,7 +143,7 @@ END
     farm/slurm.sh "$scene" "$work/picture.png" "$tiles" "${options[@]}"
     # SIGTERM to a tile, as before the time limit: it is queued again.
     kill -TERM "$(rendering)"
-    wait_for grep -rq "DUE TO JOB REQUEUE" "$work/picture.png.parts"
+    wait_for grep -rq "ended as it was asked to" "$work/picture.png.parts"
     # A node goes down while it renders: its tile is rendered on the other.
     wait_for on_node b
     kill -KILL "${started[2]}" $(on_node b)
