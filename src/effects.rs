@@ -221,6 +221,7 @@ pub struct Effects {
 impl Effects {
     /// What `viewed` calls for.
     pub fn of(viewed: &ViewedScene) -> Self {
+        let _span = tracing::info_span!("find effects").entered();
         // In its units no square below overflows or underflows, and what is too small for kernels is seen.
         let settings = viewed.settings();
         let needs = Needs::new(viewed.scene(), settings);

@@ -373,6 +373,7 @@ impl fmt::Display for Selection {
 impl Selection {
     /// What is asked for, or the first tier of `ladder` whose promise covers `viewed`; where none does, `double`.
     pub fn of(viewed: &ViewedScene, effects: &Effects, request: Request, ladder: &[Tier]) -> Self {
+        let _span = tracing::info_span!("choose precision").entered();
         let demand = Demand::of(viewed, effects);
         let excess = |tier| demand.beyond(tier, viewed.scene());
         let (tier, reason) = match request {

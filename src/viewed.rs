@@ -32,6 +32,7 @@ impl Scene {
     /// The scene as the eye of `settings` sees it.
     #[doc(hidden)]
     pub fn viewed(&self, settings: &Settings) -> ViewedScene<'_> {
+        let _span = tracing::info_span!("move scene").entered();
         let moved = moved(self, settings.view.eye);
         let units = Units::of(&moved, settings.secondary);
         let secondary = Secondary { reflection: settings.secondary.reflection * units.factor, ..settings.secondary };
