@@ -54,7 +54,7 @@ rendering() {
 }
 
 wait_for() {
-    for _ in $(seq 900); do
+    for _ in $(seq 3000); do
         if "$@" >/dev/null 2>&1; then return; fi
         sleep 0.1
     done

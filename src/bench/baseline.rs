@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::measure::{Bench, Renderer};
 use crate::random::Random;
-use crate::report::Timings;
 use crate::report::number::short;
+use crate::report::{Skipped, Timings};
 
 /// Resamples of the bootstrap, and the seed of their random numbers.
 const RESAMPLES: usize = 2000;
@@ -67,6 +67,8 @@ pub struct Comparison {
     pub notes: Vec<String>,
     /// A row for each scene and renderer.
     pub rows: Vec<Change>,
+    /// What the earlier run has measured and this one has skipped, with the reasons: as a rule it takes too long now.
+    pub skipped: Vec<Skipped>,
 }
 
 /// The times of one scene on one renderer, before and now.
@@ -152,7 +154,7 @@ impl Comparison {
             note("device", &before.name, &now.name);
             note("driver", &before.driver, &now.driver);
         }
-        let mut rows = Vec::new();
+        let (mut rows, mut skipped) = (Vec::new(), Vec::new());
         for family in &bench.families {
             let before = former.families.iter().find(|other| other.name == family.name);
             for scene in &family.scenes {
@@ -165,6 +167,12 @@ impl Comparison {
                         .push(format!("{name} is not compared: it was {} × {} at {tier}", before.width, before.height));
                     continue;
                 }
+                let had = |name: &str| before.measured.iter().any(|times| times.renderer == name);
+                let now_skipped = scene.skipped.iter().filter(|skipped| had(&skipped.name));
+                skipped.extend(now_skipped.map(|Skipped { name: renderer, reason }| Skipped {
+                    name: format!("{name} on {renderer}"),
+                    reason: reason.clone(),
+                }));
                 for measured in &scene.measured {
                     let of_renderer = |other: &&FormerTimes| other.renderer == measured.renderer.name();
                     let Some(before) = before.measured.iter().find(of_renderer) else { continue };
@@ -177,10 +185,24 @@ impl Comparison {
                 }
             }
         }
-        if rows.is_empty() {
+        let left_out = former.families.iter().flat_map(|family| family.scenes.iter().map(move |scene| (family, scene)));
+        let left_out = left_out.filter(|(family, scene)| {
+            let own = bench.families.iter().find(|own| own.name == family.name);
+            !own.is_some_and(|own| own.scenes.iter().any(|own| own.size == scene.size))
+        });
+        let left_out: Vec<_> = left_out.map(|(family, scene)| format!("{}-{}", family.name, scene.size)).collect();
+        if !left_out.is_empty() {
+            notes.push(format!("measured then and not now: {}", left_out.join(", ")));
+        }
+        if rows.is_empty() && skipped.is_empty() {
             return Err("it has none of the scenes that were measured, at their size and tier".into());
         }
-        Ok(Self { notes, rows })
+        Ok(Self { notes, rows, skipped })
+    }
+
+    /// Whether anything is slower by more than this part for sure, or too slow to be measured again.
+    pub fn is_slower(&self, part: f64) -> bool {
+        !self.skipped.is_empty() || self.rows.iter().any(|row| row.is_slower(part))
     }
 
     /// As a table for the terminal, where `part` is what counts as slower or faster.
@@ -200,6 +222,9 @@ impl Comparison {
                 format!("{low:.3} … {high:.3}"),
                 row.verdict(part)
             );
+        }
+        for Skipped { name, reason } in &self.skipped {
+            let _ = writeln!(text, "{name}: measured then, skipped now: {reason}");
         }
         for note in &self.notes {
             let _ = writeln!(text, "note: {note}");

@@ -40,7 +40,7 @@ pub(super) struct Args {
     /// Hold every scene against an earlier run, which --json has written: ratios of the medians with their 95 % intervals
     #[arg(long, value_name = "FILE", conflicts_with_all = ["list", "write", "tune"])]
     baseline: Option<PathBuf>,
-    /// End with code 1 where a scene is slower than in the baseline by more than this, for sure
+    /// End with code 1 where a scene is slower than in the baseline by more than this, for sure, or too slow to be measured now
     #[arg(long, value_name = "PERCENT", requires = "baseline", value_parser = percent)]
     fail_slower: Option<f64>,
     #[command(flatten)]
@@ -115,7 +115,7 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
     let Some(comparison) = compared.map_err(|why| unusable(args.baseline.as_deref(), &why))? else { return Ok(OK) };
     let part = args.fail_slower.unwrap_or(NOTICED);
     args.reports.show(&format!("\n{}", comparison.report(part)));
-    let fails = args.fail_slower.is_some() && comparison.rows.iter().any(|row| row.is_slower(part));
+    let fails = args.fail_slower.is_some() && comparison.is_slower(part);
     Ok(if fails { DIFFERENT } else { OK })
 }
 

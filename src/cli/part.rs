@@ -133,9 +133,9 @@ impl Note {
             let help = "help: remove it, or leave out --resume to replace it";
             Err(Failure::new(OUTPUT, format!("{} is another picture: {why}\n  {help}", visible_path(path))))
         };
-        let reader = match RowReader::open(path) {
+        let reader = match RowReader::begin(path) {
             Ok(reader) => reader,
-            // What a crash of the system can leave of a file.
+            // What a crash of the system can leave of a file: nothing, or its beginning, without what it is of.
             Err(error) if error.problem().kind() == ProblemKind::CutOff => return Ok(false),
             Err(error) => return refused(error.problem().to_string()),
         };

@@ -1,5 +1,6 @@
 //! Progress on standard error.
 
+use super::failure::Failure;
 use super::output::errln;
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
@@ -169,9 +170,13 @@ impl Progress {
 
 impl Style {
     /// Says in its own way, where it has one, that the run has failed.
-    pub(super) fn say_failed(self, message: &str) {
-        if let (Self::Openjd, Some(line)) = (self, message.lines().next()) {
-            errln!("openjd_fail: {}", visible(line));
+    pub(super) fn say_failed(self, failure: &Failure) {
+        if self == Self::Openjd {
+            match failure.message.lines().next() {
+                Some(line) => errln!("openjd_fail: {}", visible(line)),
+                // It is said already.
+                None => errln!("openjd_fail: exit code {}, for the reasons above", failure.code),
+            }
         }
     }
 }

@@ -110,7 +110,7 @@ struct Job {
 
 /// Renders every scene; a scene with errors does not keep the others from being rendered, files that are in each other's way do.
 pub(super) fn run(args: &Args) -> Result<u8, Failure> {
-    render_all(args).inspect_err(|failure| args.progress.say_failed(&failure.message))
+    render_all(args).inspect_err(|failure| args.progress.say_failed(failure))
 }
 
 fn render_all(args: &Args) -> Result<u8, Failure> {
@@ -173,7 +173,7 @@ fn render_all(args: &Args) -> Result<u8, Failure> {
         match rendered {
             Ok(stats) => all_stats.extend(stats),
             Err(failure) => {
-                args.progress.say_failed(&failure.message);
+                args.progress.say_failed(&failure);
                 let failed = failure.report();
                 // What was stopped is to be repeated, whatever else there was.
                 code = if code == OK || failed == STOPPED { failed } else { code };
@@ -220,7 +220,8 @@ impl Args {
 
     /// How progress is shown.
     fn progress_style(&self) -> Style {
-        if self.quiet { Style::None } else { self.progress }
+        // A scheduler reads it, no user.
+        if self.quiet && self.progress != Style::Openjd { Style::None } else { self.progress }
     }
 
     /// What of this scene can be done before the device is open.

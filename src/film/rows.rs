@@ -25,6 +25,8 @@ pub struct RowReader {
     path: PathBuf,
     size: (u32, u32),
     note: Option<String>,
+    /// Why rows at the end are not there, where that is known.
+    cut: Option<Problem>,
     rows: Rows,
 }
 
@@ -39,7 +41,19 @@ impl RowReader {
     /// # Errors
     /// A file that cannot be read, is another format, or whose header is damaged; a P6 file of another length than its picture has.
     pub fn open(path: &Path) -> Result<Self, ReadError> {
+        Self::begin(path)?.whole()
+    }
+
+    /// Likewise, also where a P6 file with a note has too few rows.
+    pub(crate) fn begin(path: &Path) -> Result<Self, ReadError> {
         opened(path).map_err(|problem| ReadError { path: path.to_owned(), problem })
+    }
+
+    fn whole(self) -> Result<Self, ReadError> {
+        match self.cut {
+            Some(problem) => Err(ReadError { path: self.path, problem }),
+            None => Ok(self),
+        }
     }
 
     /// Width and height, both at least 1.
@@ -88,50 +102,56 @@ impl RowReader {
     ///
     /// # Errors
     /// A file that is damaged or cut off.
-    pub fn check(mut self) -> Result<(), ReadError> {
-        let mut row = vec![0; self.size.0 as usize * 3];
-        for _ in 0..self.size.1 {
-            self.read(&mut row)?;
+    pub fn check(self) -> Result<(), ReadError> {
+        let mut whole = self.whole()?;
+        let mut row = vec![0; whole.size.0 as usize * 3];
+        for _ in 0..whole.size.1 {
+            whole.read(&mut row)?;
         }
-        self.finish()
+        whole.finish()
     }
 }
 
 fn opened(path: &Path) -> Result<RowReader, Problem> {
-    let whole = |size, note, rows| Ok(RowReader { path: path.to_owned(), size, note, rows });
+    let reader = |size, note, cut, rows| Ok(RowReader { path: path.to_owned(), size, note, cut, rows });
     let mut file = File::open(path)?;
     let mut start = Vec::new();
     file.by_ref().take(MAX_NOTE as u64 + 256).read_to_end(&mut start)?;
-    // What a crash of the system can leave of a file.
-    let is_cut = png::MAGIC.starts_with(&start) || b"P6\n".starts_with(&start);
-    let cut_off = |problem: Problem| if is_cut { problem.of_kind(ProblemKind::CutOff) } else { problem };
+    // What a crash of the system can leave of a file with a note. A PPM without one may be somebody else's.
+    let noted = format!("P6\n# {NOTE} ");
+    let is_cut = [png::MAGIC, noted.as_bytes()].iter().any(|begin| begin.starts_with(&start))
+        || start.starts_with(noted.as_bytes());
+    let cut_off = |problem: Problem| problem.of_kind(if is_cut { ProblemKind::CutOff } else { ProblemKind::Damaged });
     let kind = recognise(&start).map_err(cut_off)?;
     file.seek(SeekFrom::Start(0))?;
     match kind {
         Kind::Ppm => {
-            let head = ppm::Head::of(&start)?;
+            let head = ppm::Head::of(&start).map_err(cut_off)?;
             let samples = sample_count(head.width, head.height).map_err(|wrong| Problem::fatal(wrong.to_string()))?;
             let (expected, found) = ((head.raster + samples) as u64, file.metadata()?.len());
-            if found != expected {
-                let kind = if found < expected { ProblemKind::CutOff } else { ProblemKind::Damaged };
-                let why = format!("the file has {found} bytes, and its picture takes {expected}");
-                return Err(Problem::fatal(why).of_kind(kind));
+            let note = note_in(&start[..head.raster]);
+            let wrong = || {
+                Problem::fatal(format!("the file has {found} bytes, and its picture takes {expected}"))
+                    .of_kind(ProblemKind::Damaged)
+            };
+            if found > expected || found < expected && note.is_none() {
+                return Err(wrong());
             }
             file.seek(SeekFrom::Start(head.raster as u64))?;
-            let note = note_in(&start[..head.raster]);
-            whole((head.width, head.height), note, Rows::P6(BufReader::new(file)))
+            let cut = (found < expected).then(wrong);
+            reader((head.width, head.height), note, cut, Rows::P6(BufReader::new(file)))
         }
         Kind::Png => {
             let decoder = Decoder::new_with_limits(BufReader::new(file), Limits { bytes: DECODER_BYTES });
-            let reader = decoded(|| decoder.read_info().map_err(|error| damaged(&error)))?;
-            let info = reader.info();
+            let decoder = decoded(|| decoder.read_info().map_err(|error| damaged(&error)))?;
+            let info = decoder.info();
             if (info.color_type, info.bit_depth, info.interlaced) != (ColorType::Rgb, BitDepth::Eight, false) {
                 let why = "the PNG has other pixels than 8-bit RGB, row by row";
                 return Err(Problem::fatal(why).of_kind(ProblemKind::Unsupported));
             }
             sample_count(info.width, info.height).map_err(|wrong| Problem::fatal(wrong.to_string()))?;
             let (size, note) = ((info.width, info.height), text_in(info));
-            whole(size, note, Rows::Png(Box::new(reader)))
+            reader(size, note, None, Rows::Png(Box::new(decoder)))
         }
     }
 }

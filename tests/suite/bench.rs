@@ -277,6 +277,13 @@ fn the_program_measures_lists_and_writes() {
     let both = std::fs::read_to_string(folder.path().join("both.json")).unwrap();
     let both: serde_json::Value = serde_json::from_str(&both).unwrap();
     assert!(both["comparison"]["rows"][1]["ratio"].as_f64().unwrap() > 5.0);
+    // What is not measured any more is no success.
+    let hurried = format!("bench --families spheres {small} --seconds 0 --baseline r.json --fail-slower 10000");
+    let (table, _) = run(&hurried, 1);
+    assert!(table.contains("spheres-10 on CPU: measured then, skipped now"), "{table}");
+    let (table, _) =
+        run("bench --families spheres --device cpu --res 32x18 --runs 1 --max-spheres 10 --baseline r.json", 0);
+    assert!(table.contains("measured then and not now: spheres-100"), "{table}");
     for (arguments, why) in [
         ("--families classic --baseline r.json", "none of the scenes"),
         ("--families spheres --max-depth 1 --baseline r.json", "other conventions, samples or depth"),

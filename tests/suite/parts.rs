@@ -383,6 +383,16 @@ fn what_is_there_and_whole_is_not_rendered_again() {
             assert!(place.read(name) == before, "{length} bytes of {name}");
         }
     }
+    // What is cut off may be somebody else's, or a part of something else.
+    place.render("", "plain.ppm");
+    let plain = place.read("plain.ppm");
+    place.render("--tile 0/2", "other.ppm");
+    let other = place.read("other.ppm");
+    for contents in [&plain[..plain.len() - 1], &other[..other.len() - 1], b"P6\n# my notes\n"] {
+        fs::write(place.path("cut.ppm"), contents).unwrap();
+        run("--tile 1/2 -o cut.ppm", 6, "cut.ppm is another picture");
+        assert!(place.read("cut.ppm") == contents);
+    }
     fs::write(place.path("text.png"), "not a picture").unwrap();
     run("-o text.png", 6, "text.png is another picture");
     place.render("", "plain.png");
@@ -455,6 +465,8 @@ fn a_stopped_run_asks_to_be_repeated_and_tells_openjd_so() {
     let mut progress = stderr.lines().rev().filter_map(|line| line.strip_prefix("openjd_progress: "));
     assert_eq!(progress.next().map(|part| part.parse::<f64>().unwrap()), Some(100.0), "{stderr}");
     place.run("render --progress openjd --device cpu gone.txt -o a.png", 3, "openjd_fail: ");
+    fs::write(place.path("bad.txt"), "SPHER\n").unwrap();
+    place.run("render -q --progress openjd --device cpu bad.txt -o a.png", 3, "openjd_fail: ");
 }
 
 // --- whatever a file says -------------------------------------------------------------------------------------------

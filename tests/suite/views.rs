@@ -328,6 +328,11 @@ fn frames_are_resumed_and_particles_turn() {
     assert_eq!((stamp(), fs::read(folder.path("a_1.png")).unwrap()), (before, first));
     assert!(folder.path("a_2.png").is_file());
     folder.render("scene.txt --turntable 4 --resume -o a_%d.png", 6, "frame 2: ");
+    folder.render("scene.txt --turntable 4 --progress openjd --resume -o a_%d.png", 6, "openjd_fail: frame 2: ");
+    // The scene of a frame that is not chosen is an input as well.
+    folder.write("table.csv", "scene\nother_2.txt\nscene.txt\n");
+    fs::copy(folder.path("scene.txt"), folder.path("other_2.txt")).unwrap();
+    folder.render("scene.txt --views table.csv --frames 2 --format p6 -o other_%d.txt", 6, "an input of this run");
     folder.render("scene.txt --turntable 3 --tile 0/2 -o b_%d.png", 2, "do not go with --crop or --tile");
 
     folder.write("water.xyz", "3\n\nO 0 0 0\nH 0.96 0 0\nH -0.24 0.93 0\n");

@@ -109,16 +109,18 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
     let start = Instant::now();
     let read = || {
         let loaded = Loaded::read(&args.scenes[0], &reading, args.quiet)?;
-        let frames = args.views.chosen(args.views.all(args, &loaded)?)?;
+        let all = args.views.all(args, &loaded)?;
+        // Those of frames that are not chosen are no outputs either.
+        let scenes: BTreeSet<_> = all.iter().filter_map(|frame| frame.scene.clone()).collect();
+        let frames = args.views.chosen(all)?;
         let ahead = args.ahead(&loaded.scene, &settings);
-        Ok::<_, Failure>((loaded, frames, ahead))
+        Ok::<_, Failure>((loaded, frames, scenes, ahead))
     };
     let (read, (gpu, open_time)) = at_once(read, || (args.device.open_with(args.quiet), start.elapsed()));
-    let (loaded, frames, ahead) = read?;
+    let (loaded, frames, scenes, ahead) = read?;
     let opened = Opened { gpu: gpu?.map(|gpu| gpu.having(ahead).keeping_kernels(USUAL_KERNELS)), time: open_time };
 
-    let scenes: BTreeSet<_> = frames.iter().filter_map(|(_, frame)| frame.scene.as_ref()).collect();
-    let mut guard = Guard::new(args.scenes.iter().chain(&args.views.views).chain(scenes));
+    let mut guard = Guard::new(args.scenes.iter().chain(&args.views.views).chain(&scenes));
     if let Some(path) = args.stats_json.as_deref().filter(|path| *path != Path::new("-")) {
         check_place(path)?;
         guard.output("--stats-json", path)?;

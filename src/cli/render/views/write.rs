@@ -121,7 +121,10 @@ impl<'a> Writer<'a> {
             Ok(value) => return Some(value),
             Err(failure) => failure,
         };
-        self.progress.pause(|| _ = failure.report());
+        self.progress.pause(|| {
+            self.args.progress.say_failed(&failure);
+            _ = failure.report();
+        });
         // What was stopped is to be repeated, whatever else there was.
         self.code = if self.code == OK || failure.code == STOPPED { failure.code } else { self.code };
         if [DEVICE_LOST, OUTPUT, STOPPED].contains(&failure.code) {
@@ -160,7 +163,10 @@ impl<'a> Writer<'a> {
 
     /// All frames are done with; says so and returns their statistics and the exit code.
     pub(super) fn finish(self, took: Duration) -> (Vec<Stats>, u8) {
-        self.progress.finish();
+        // What failed is not at 100 %.
+        if self.code == OK {
+            self.progress.finish();
+        }
         if !self.args.quiet && self.there > 0 {
             errln!("{}: {} there already", visible(&self.name), count(self.there, "frame"));
         }
