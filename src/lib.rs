@@ -135,7 +135,7 @@ pub use film::Picture;
 pub use glam::DVec3;
 pub use precision::Tier;
 pub use renderer::{Error, Renderer, Views};
-pub use scene::{Light, Scene, Sphere, Window};
+pub use scene::{Fov, Light, Scene, Sphere, Window};
 pub use settings::Settings;
 pub use verify::Verify;
 pub use view::View;

@@ -155,10 +155,9 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
         };
         let mut doubts = Vec::new();
         if let Some(scene) = &mut input.parsed.scene {
-            doubts = args.picture.doubts(scene, &settings);
+            doubts = args.picture.frame_with_doubts(scene, &settings)?;
             // What `render` would say, run in this folder.
             doubts.extend(named_doubt(scene));
-            args.picture.resize(scene);
         }
         let warnings = input.parsed.warnings + doubts.len();
         let contents = input.parsed.scene.as_ref().map(|scene| Contents::new(scene, &args.picture, &settings));

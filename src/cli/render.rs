@@ -233,10 +233,10 @@ fn render_one(
     [open_time, ready_time]: [Duration; 2],
 ) -> Result<Option<Stats>, Failure> {
     let start = Instant::now();
+    let doubts = args.picture.frame_with_doubts(&mut loaded.scene, settings)?;
     if !args.quiet {
-        print_doubts(&loaded.name, &args.picture.doubts(&loaded.scene, settings));
+        print_doubts(&loaded.name, &doubts);
     }
-    args.picture.resize(&mut loaded.scene);
     let scene = &loaded.scene;
     let choice = args.sampling.choice((scene.width, scene.height))?;
     let area = args.part.area((scene.width, scene.height))?;

@@ -36,7 +36,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     }
     let settings = args.picture.settings()?;
     let mut loaded = Loaded::read(&args.scene, false)?;
-    args.picture.resize(&mut loaded.scene);
+    args.picture.frame(&mut loaded.scene)?;
     let scene = &loaded.scene;
     let is_in_part = args.sampling.choice((scene.width, scene.height))?.is_some();
     let viewed = scene.viewed(&settings);

@@ -37,7 +37,7 @@ use crate::words::count;
 #[command(next_help_heading = "Camera")]
 pub(super) struct Options {
     /// Render a frame for each row of a CSV file, whose header has some of the names
-    /// `eye_x,eye_y,eye_z,at_x,at_y,at_z,up_x,up_y,up_z,width,height,near,left,right,bottom,top,scene`; an empty cell is as in the
+    /// `eye_x,eye_y,eye_z,at_x,at_y,at_z,up_x,up_y,up_z,width,height,near,left,right,bottom,top,fov,scene`; an empty cell is as in the
     /// options or the scene
     #[arg(long, value_name = "FILE", group = "many")]
     views: Option<PathBuf>,
@@ -80,7 +80,8 @@ impl Options {
         let refused = |why: String| Failure::new(USAGE, why);
         let placements = turntable(self.turntable.unwrap_or(1), &loaded.scene, &placement);
         let placements = placements.map_err(|error| refused(error.to_string()))?;
-        let views = placements.iter().map(|placement| Ok(Frame::seen_by(placement.view()?)));
+        let views =
+            placements.iter().map(|placement| Ok(Frame { fov: placement.fov, ..Frame::seen_by(placement.view()?) }));
         views.collect::<Result<_, ViewError>>().map_err(|error| refused(error.to_string()))
     }
 

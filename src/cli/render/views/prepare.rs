@@ -18,6 +18,7 @@ use crate::gpu::Gpu;
 use crate::scene::{Scene, Window};
 use crate::settings::Settings;
 use crate::verify::Verify;
+use crate::views::Frame;
 
 /// What renders, and how long it took to open.
 pub(super) struct Opened {
@@ -111,7 +112,7 @@ impl<'a> Preparer<'a> {
         }
         if !args.quiet {
             // Said once for all frames of which there is the same to say.
-            let found = doubts_of(scene, source.file_size, &settings);
+            let found = doubts_of(scene, &frame, source.file_size, &settings);
             if found != self.doubts {
                 print_doubts(&format!("{name}: {}", frame_name(number)), &found);
                 self.doubts = found;
@@ -164,10 +165,10 @@ impl<'a> Preparer<'a> {
 }
 
 /// What can hardly be meant, where the scene's file says another size.
-fn doubts_of(scene: &mut Scene, file_size: [u32; 2], settings: &Settings) -> Vec<String> {
+fn doubts_of(scene: &mut Scene, frame: &Frame, file_size: [u32; 2], settings: &Settings) -> Vec<String> {
     let size = [scene.width, scene.height];
     [scene.width, scene.height] = file_size;
-    let found = doubts(scene, settings, (size != file_size).then_some(size.into()));
+    let found = doubts(scene, settings, (size != file_size && frame.fov.is_none()).then_some(size.into()));
     [scene.width, scene.height] = size;
     found
 }
