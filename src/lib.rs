@@ -89,6 +89,8 @@ mod hash;
 #[doc(hidden)]
 pub mod limits;
 #[doc(hidden)]
+pub mod linear;
+#[doc(hidden)]
 pub mod mistakes;
 #[doc(hidden)]
 pub mod misuse;

@@ -8,7 +8,8 @@ use serde::Serialize;
 use super::failure::{Failure, OK, SCENE};
 use super::files::{check_place, json};
 use super::input::{Input, print_doubts};
-use super::named::{check_named, format_by_ending};
+use super::linear::FileFormat;
+use super::named::check_named;
 use super::options::PictureOptions;
 use super::output::{out, outln};
 use super::render::{explanation, precision_explanation};
@@ -131,8 +132,10 @@ impl Contents {
 /// What `render` would say of the file that OUTPUT names, run in this folder.
 fn named_doubt(scene: &Scene) -> Option<String> {
     let path = Path::new(scene.output.as_ref()?);
-    let refused =
-        check_named(path).and_then(|()| check_place(path)).and_then(|()| format_by_ending(path).map(drop)).err()?;
+    let refused = check_named(path)
+        .and_then(|()| check_place(path))
+        .and_then(|()| FileFormat::by_ending(path).map(drop))
+        .err()?;
     Some(format!("without -o there is no picture: {}", refused.message.lines().next()?))
 }
 

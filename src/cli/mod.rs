@@ -17,6 +17,7 @@ mod files;
 mod grade;
 mod guard;
 mod input;
+mod linear;
 mod manual;
 mod merge;
 mod named;

@@ -33,6 +33,7 @@ mod heads;
 mod house;
 mod keys;
 mod library;
+mod linear;
 mod lists;
 mod magnitudes;
 mod masked;

@@ -237,7 +237,7 @@ fn what_makes_no_sense_is_refused_before_anything_is_rendered() {
         ("--turntable 2 --aov t scene.txt -o f%d.png", 2, "--aov"),
         ("--turntable 2 --certificate c.json scene.txt -o f%d.png", 2, "--certificate"),
         ("--turntable 2 --sparse 0.5 scene.txt -o f%d.png", 2, "--sparse"),
-        ("--turntable 2 scene.txt -o f%d.jpg", 2, "written as .ppm or .png"),
+        ("--turntable 2 scene.txt -o f%d.jpg", 2, "written as .ppm, .png, .pfm or .exr"),
         ("--turntable 2 scene.txt -o none/f%d.png", 6, "there is no folder none"),
         ("--views none.csv scene.txt -o f%d.png", 3, "cannot read the views none.csv"),
         ("--views views.ppm scene.txt -o views.ppm%%%d --format p6", 0, ""),

@@ -16,12 +16,13 @@ use self::frame_list::FrameList;
 use self::pattern::Pattern;
 use self::prepare::{Opened, Prepared, Preparer, Source};
 use self::write::{Step, Writer};
-use super::{Args, Noted, folder, format_of, write_stats};
+use super::{Args, Noted, coding_of, folder, write_stats};
 use crate::cli::color;
 use crate::cli::failure::{Failure, SCENE, USAGE};
 use crate::cli::files::check_place;
 use crate::cli::guard::Guard;
 use crate::cli::input::Loaded;
+use crate::cli::linear::Coding;
 use crate::cli::named::check_named;
 use crate::cli::output::err;
 use crate::engine::render_bands;
@@ -171,7 +172,9 @@ fn jobs(args: &Args, loaded: &Loaded, frames: Vec<(u32, Frame)>, guard: &mut Gua
         }
         check_place(&path)?;
         guard.output(&format!("frame {number}"), &path)?;
-        let format = format_of(args, &Target::File(path.clone()))?;
+        let Coding::Levels(format) = coding_of(args, &Target::File(path.clone()))? else {
+            return Err(Failure::new(USAGE, "PFM, EXR, --bits 16 and --alpha do not go with --views or --turntable"));
+        };
         Ok(Job { number, frame, path, format })
     };
     frames.into_iter().map(job).collect()

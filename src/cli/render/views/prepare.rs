@@ -8,11 +8,12 @@ use super::{Args, Job, frame_name};
 use crate::accel::KeptLists;
 use crate::cli::failure::{Failure, SCENE};
 use crate::cli::input::{Loaded, print_doubts};
+use crate::cli::linear::Coding;
 use crate::cli::render::explain;
 use crate::cli::stats::Stats;
 use crate::doubts::doubts;
 use crate::effects::Effects;
-use crate::engine::{Backend, Engine, Options, Times, device_name, ms};
+use crate::engine::{Backend, Engine, Times, device_name, ms};
 use crate::film::{Format, Target};
 use crate::gpu::Gpu;
 use crate::scene::{Scene, Window};
@@ -131,8 +132,7 @@ impl<'a> Preparer<'a> {
         if note.as_ref().map_or(Ok(false), |note| note.is_done(&target, true))? {
             return Ok(None);
         }
-        let wants_stats = args.stats || args.stats_json.is_some();
-        let options = Options { count_rays: wants_stats && !args.no_ray_counts, ..Options::default() };
+        let options = args.options(Coding::Levels(format));
         let verify = args.verify.unwrap_or_else(|| Verify::usual(scene));
         let engine = Engine::verified(Backend::of(gpu, &selection), viewed, &effects, &options, verify)?;
         let stats = Box::new(Stats {
