@@ -7,10 +7,10 @@ use glam::DVec3;
 
 use super::failure::{Failure, USAGE};
 use super::named::format_or_refusal;
-use crate::engine::Band;
 use crate::film::{
     Container, Format, LinearFormat, LinearPicture, MOST_LINEAR_PIXELS, OutputError, PictureWriter, Target,
 };
+use crate::linear::Linear;
 use crate::settings::Quantize;
 
 /// What a file has of each pixel.
@@ -144,12 +144,12 @@ impl Film {
         }
     }
 
-    /// Takes the next rows.
-    pub(super) fn write(&mut self, band: &Band) -> Result<(), OutputError> {
+    /// Takes the next rows: 3 bytes a pixel, and colours where the engine has them.
+    pub(super) fn write(&mut self, rgb: &[u8], linear: &[Linear]) -> Result<(), OutputError> {
         match self {
-            Self::Levels(writer) => writer.write_rows(band.rgb),
+            Self::Levels(writer) => writer.write_rows(rgb),
             Self::Linear(picture, _) => {
-                picture.add(band.rgb, band.linear);
+                picture.add(rgb, linear);
                 Ok(())
             }
         }

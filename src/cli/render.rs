@@ -22,7 +22,7 @@ use super::sampling::{Choice, SamplingOptions};
 use super::stats::{Sampled, Stats, Verified, peak_memory_mib};
 use crate::effects::Effects;
 use crate::engine::{
-    Backend, Band, Engine, Options, Output, Pixels, Rays, Stages, Times, device_name, ms, render_bands, render_partial,
+    Backend, Engine, Options, Output, Pixels, Rays, Stages, Times, device_name, ms, render_bands, render_partial,
 };
 use crate::film::{Format, Target};
 use crate::gpu::{Ahead, DeviceKind, Gpu};
@@ -287,7 +287,7 @@ fn render_one(
             let samples = Samples::new((width, height), &density)?;
             let picture = render_partial(engine, backend, &samples, fill, |part| progress.set(part))?;
             let start = Instant::now();
-            writer.write(&Band { first: 0, rgb: &picture.rgb, linear: &[] })?;
+            writer.write(&picture.rgb, &[])?;
             beside.add(&picture.rgb);
             write_time += start.elapsed();
             let pixels = samples.pixels().len() as u64;
@@ -296,7 +296,7 @@ fn render_one(
         }
         Renderer::Whole(engine) => render_bands(engine, |band| {
             let start = Instant::now();
-            writer.write(&band)?;
+            writer.write(band.rgb, band.linear)?;
             write_time += start.elapsed();
             certificate.add(band.rgb);
             beside.add(band.rgb);

@@ -161,6 +161,20 @@ fn sixteen_bits_follow_the_rule_of_eight() {
     assert_eq!(std::fs::read(place.path("b.png")).unwrap(), std::fs::read(place.path("c.png")).unwrap());
 }
 
+#[test]
+fn frames_are_the_files_of_single_runs() {
+    let place = Folder::new();
+    std::fs::write(place.path("views.csv"), "eye_x,width\n,\n0.5,17\n").unwrap();
+    for (options, ending) in [("--alpha --spp 4", "exr"), ("", "pfm"), ("--bits 16", "png")] {
+        let options = format!("-q --device cpu {options} scene.txt -o");
+        place.render(&format!("--views views.csv {options} f%d.{ending}"), 0, "");
+        place.render(&format!("{options} one.{ending}"), 0, "");
+        place.render(&format!("--eye 0.5,0,0 --res 17x20 {options} two.{ending}"), 0, "");
+        let file = |name: &str| std::fs::read(place.path(&format!("{name}.{ending}"))).unwrap();
+        assert!(file("f1") == file("one") && file("f2") == file("two"), "{ending}");
+    }
+}
+
 // --- alpha -----------------------------------------------------------------------------------------------------------------
 
 /// Glass is as opaque as the rest, whatever is seen through it.
@@ -326,7 +340,7 @@ fn what_no_file_has_is_refused_before_anything_is_rendered() {
         ("--sparse 0.5 scene.txt -o a.pfm", "do not go with --foveate or --sparse"),
         ("--tile 0/2 --bits 16 scene.txt -o a.png", "do not go with --crop, --tile or --resume"),
         ("--resume --alpha scene.txt -o a.png", "do not go with --crop, --tile or --resume"),
-        ("--turntable 2 scene.txt -o a%d.exr", "do not go with --views or --turntable"),
+        ("--turntable 2 --resume scene.txt -o a%d.exr", "do not go with --crop, --tile or --resume"),
         ("--res 8192x8192 scene.txt -o a.exr", "33554432 pixels at the most"),
         ("scene.txt -o a.tiff", "--format p6, p3, png, pfm or exr writes that"),
     ] {

@@ -26,7 +26,7 @@ use crate::cli::linear::Coding;
 use crate::cli::named::check_named;
 use crate::cli::output::err;
 use crate::engine::render_bands;
-use crate::film::{Format, Target};
+use crate::film::Target;
 use crate::gpu::{self, USUAL_KERNELS};
 use crate::threads::{at_once, in_stages};
 use crate::view::ViewError;
@@ -56,7 +56,7 @@ struct Job {
     number: u32,
     frame: Frame,
     path: PathBuf,
-    format: Format,
+    coding: Coding,
 }
 
 impl Options {
@@ -172,25 +172,23 @@ fn jobs(args: &Args, loaded: &Loaded, frames: Vec<(u32, Frame)>, guard: &mut Gua
         }
         check_place(&path)?;
         guard.output(&format!("frame {number}"), &path)?;
-        let Coding::Levels(format) = coding_of(args, &Target::File(path.clone()))? else {
-            return Err(Failure::new(USAGE, "PFM, EXR, --bits 16 and --alpha do not go with --views or --turntable"));
-        };
-        Ok(Job { number, frame, path, format })
+        let coding = coding_of(args, &Target::File(path.clone()))?;
+        Ok(Job { number, frame, path, coding })
     };
     frames.into_iter().map(job).collect()
 }
 
 /// Renders a frame and hands on what becomes of it.
 fn render(args: &Args, prepared: Result<Option<Prepared>, Failure>, hand_on: &mut dyn FnMut(Step)) {
-    let Prepared { target, format, note, mut engine, mut stats, start } = match prepared {
+    let Prepared { target, coding, note, levels, mut engine, mut stats, start } = match prepared {
         Ok(Some(prepared)) => prepared,
         Ok(None) => return hand_on(Step::There),
         Err(failure) => return hand_on(Step::Failed(failure)),
     };
     let number = stats.frame.unwrap_or_default();
-    hand_on(Step::Begin { number, target, format, note, size: engine.size() });
+    hand_on(Step::Begin { number, target, coding, note, levels, size: engine.size() });
     let rendered = render_bands(&mut engine, |band| {
-        hand_on(Step::Rows(band.rgb.to_vec()));
+        hand_on(Step::Rows { rgb: band.rgb.to_vec(), linear: band.linear.to_vec() });
         Ok::<_, gpu::Error>(())
     });
     let not_finite = match rendered {

@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use glam::DVec3;
+
 use super::{Args, Job, frame_name};
 use crate::accel::KeptLists;
 use crate::cli::failure::{Failure, SCENE};
@@ -14,10 +16,10 @@ use crate::cli::stats::Stats;
 use crate::doubts::doubts;
 use crate::effects::Effects;
 use crate::engine::{Backend, Engine, Times, device_name, ms};
-use crate::film::{Format, Target};
+use crate::film::Target;
 use crate::gpu::Gpu;
 use crate::scene::{Scene, Window};
-use crate::settings::Settings;
+use crate::settings::{Quantize, Settings};
 use crate::verify::Verify;
 use crate::views::Frame;
 
@@ -30,9 +32,11 @@ pub(super) struct Opened {
 /// A frame that is ready to be rendered.
 pub(super) struct Prepared<'a> {
     pub(super) target: Target,
-    pub(super) format: Format,
+    pub(super) coding: Coding,
     /// What the file says of itself.
     pub(super) note: Option<String>,
+    /// How colours become levels, and the background.
+    pub(super) levels: (Quantize, DVec3),
     pub(super) engine: Engine<'a>,
     /// What is known of it so far.
     pub(super) stats: Box<Stats>,
@@ -98,7 +102,7 @@ impl<'a> Preparer<'a> {
         Some(prepared)
     }
 
-    fn prepared(&mut self, Job { number, frame, path, format }: Job) -> Result<Option<Prepared<'a>>, Failure> {
+    fn prepared(&mut self, Job { number, frame, path, coding }: Job) -> Result<Option<Prepared<'a>>, Failure> {
         let start = Instant::now();
         let (args, gpu) = (self.args, self.gpu);
         let source = match &frame.scene {
@@ -128,11 +132,14 @@ impl<'a> Preparer<'a> {
         }
         let target = Target::File(path);
         let area = args.part.area((scene.width, scene.height))?;
-        let note = args.part.note(scene, area, (&settings, &effects), (gpu, &selection), format)?;
+        coding.check_size(area.size())?;
+        let note = |format| args.part.note(scene, area, (&settings, &effects), (gpu, &selection), format);
+        let note = coding.levels().map_or(Ok(None), note)?;
+        let levels = (settings.quantize, scene.background);
         if note.as_ref().map_or(Ok(false), |note| note.is_done(&target, true))? {
             return Ok(None);
         }
-        let options = args.options(Coding::Levels(format));
+        let options = args.options(coding);
         let verify = args.verify.unwrap_or_else(|| Verify::usual(scene));
         let engine = Engine::verified(Backend::of(gpu, &selection), viewed, &effects, &options, verify)?;
         let stats = Box::new(Stats {
@@ -160,7 +167,7 @@ impl<'a> Preparer<'a> {
             total_ms: 0.0,
             peak_memory_mib: None,
         });
-        Ok(Some(Prepared { target, format, note: note.map(|note| note.line), engine, stats, start }))
+        Ok(Some(Prepared { target, coding, note: note.map(|note| note.line), levels, engine, stats, start }))
     }
 }
 
