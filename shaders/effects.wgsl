@@ -23,6 +23,9 @@ override CERTIFIED: bool = false;
 // Side of the grid of samples in each pixel.
 override SAMPLES: u32 = 1u;
 
+// Each pixel also says its colour before that is quantised, and how many of its samples hit something.
+override LINEAR: bool = false;
+
 // Each pixel also says how many rays it took.
 override COUNT_RAYS: bool = false;
 

@@ -6,7 +6,7 @@
 @group(0) @binding(7) var<storage, read_write> pixels: array<u32>;
 
 // What the primary ray says of itself, for whoever finishes its path.
-fn keep_status(slot: u32) {
+fn keep_status(slot: u32, hits: bool) {
     if TANGENTS {
         pixels[slot] = select(0u, STATUS_UNSURE << 24u, is_unsure);
     }

@@ -1,14 +1,14 @@
-// Several samples a pixel: their results are colours, of which the pixel is the mean.
+// Several samples a pixel, or colours that are wanted themselves: results are colours, of which the pixel is the mean.
 // needs: counters, effects, real, slots, trace
-// host: STATUS_CUT, STATUS_UNSURE
+// host: STATUS_CUT, STATUS_HIT, STATUS_UNSURE
 
 // With the status, as a number.
 @group(0) @binding(7) var<storage, read_write> colors: array<vec4r>;
 
 // What the primary ray says of itself, for whoever finishes its path.
-fn keep_status(slot: u32) {
-    if TANGENTS {
-        colors[slot].w = select(real(0.0), real(STATUS_UNSURE), is_unsure);
+fn keep_status(slot: u32, hits: bool) {
+    if TANGENTS | LINEAR {
+        colors[slot].w = real(select(0u, STATUS_UNSURE, TANGENTS & is_unsure) | select(0u, STATUS_HIT, LINEAR & hits));
     }
 }
 
@@ -17,7 +17,7 @@ fn finish(slot: u32, color: vec3r) {
     if CERTIFIED {
         // Nobody knows how far the mean of several is off.
         status += real(STATUS_UNSURE);
-    } else if TANGENTS {
+    } else if TANGENTS | LINEAR {
         status += colors[slot].w;
     }
     colors[slot] = vec4r(color, status);
@@ -36,7 +36,7 @@ fn trace_pixel(pixel: vec2<u32>, first_slot: u32) {
     // The first that was left out stands for all: it has no path that could finish it later.
     if sample < SAMPLES * SAMPLES {
         is_cut = true;
-        keep_status(first_slot + sample);
+        keep_status(first_slot + sample, false);
         finish(first_slot + sample, vec3r());
     }
 }

@@ -7,6 +7,6 @@ fn trace(pixel: vec2<u32>, first_slot: u32, sample: u32) {
     begin_bound();
     let ray = primary_ray(pixel * SAMPLES + vec2(sample % SAMPLES, sample / SAMPLES));
     let hit = nearest_seen(ray, pixel);
-    keep_status(slot);
+    keep_status(slot, hit.found);
     follow(ray, hit, slot);
 }

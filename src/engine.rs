@@ -8,9 +8,10 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 
 use crate::area::Area;
-use crate::cpu::{Judge, Reference, Tally};
+use crate::cpu::{Judge, Reference, Shown, Tally};
 use crate::effects::Effects;
 use crate::gpu::{self, Gpu, GpuRenderer, Rendered};
+use crate::linear::Linear;
 use crate::misuse::{Misuse, check_picture};
 use crate::precision::{Selection, Tier};
 use crate::stop;
@@ -27,6 +28,8 @@ pub use partial::{Filler, PartialPicture, render_partial};
 
 /// Bytes of one band of rows at the most, unless a single row of tiles takes more.
 const BAND_BYTES: usize = 16 << 20;
+/// A band of colours takes so many times the memory.
+const LINEAR_PART: usize = 16;
 /// Pixels of the first band, whose time nobody knows.
 const FIRST_BAND: usize = 1 << 19;
 /// About how long a band takes, in ms: whoever waits sees it come.
@@ -115,6 +118,7 @@ pub enum Engine<'a, O = Rows> {
 #[derive(Debug)]
 pub struct CpuEngine {
     reference: Reference<f64>,
+    is_linear: bool,
     prepare: Duration,
     render: Duration,
     tally: Tally,
@@ -158,18 +162,18 @@ pub struct DeviceEngine<'a, O> {
 }
 
 impl<O: Output> DeviceEngine<'_, O> {
-    /// Decides what rounding could not and calculates what the device cannot, of so many pixels; `place` puts a pixel's colour where it
-    /// belongs. Returns how many pixels are not finite.
+    /// Decides what rounding could not and calculates what the device cannot, of so many pixels; `place` puts a pixel's levels where they
+    /// belong, and its colour where there is one. Returns how many pixels are not finite.
     fn decide(
         &mut self,
         Rendered { mut not_finite, mut unsure, mut cut }: Rendered,
         pixels: usize,
-        mut place: impl FnMut([u32; 2], [u8; 3]),
+        mut place: impl FnMut([u32; 2], [u8; 3], Option<Linear>),
     ) -> Result<u64, gpu::Error> {
         self.cut += cut.len() as u64;
         if let (Some(certifier), Some(kept)) = (&mut self.certifier, &self.kept) {
             certifier.stages.kernel += (pixels - unsure.len() - cut.len()) as u64;
-            let left = certifier.render_again(kept, unsure, &mut place)?;
+            let left = certifier.render_again(kept, unsure, |pixel, levels| place(pixel, levels, None))?;
             not_finite += left.not_finite;
             unsure = left.unsure;
             cut.extend(left.cut);
@@ -186,16 +190,39 @@ impl<O: Output> DeviceEngine<'_, O> {
             (None, None) => return Err(self.renderer.too_few_turns(cut.len())),
         };
         unsure.extend(cut);
-        let mut colors = vec![[0; 3]; unsure.len()];
-        let tally = reference.pixels(&unsure, &mut colors)?;
+        let (shown, tally) = reference.all_of_pixels(&unsure)?;
         if let Some(certifier) = &mut self.certifier {
             certifier.stages.reference += unsure.len() as u64;
             certifier.stages.more_bits += tally.more_bits;
             certifier.stages.undecided += tally.undecided;
         }
-        unsure.into_iter().zip(colors).for_each(|(pixel, color)| place(pixel, color));
+        unsure.into_iter().zip(shown).for_each(|(pixel, Shown { levels, linear })| place(pixel, levels, Some(linear)));
         self.decided += start.elapsed();
         Ok(not_finite + tally.not_finite)
+    }
+}
+
+impl DeviceEngine<'_, Rows> {
+    /// Decides what rounding could not of these rows, and verifies them; returns how many pixels are not finite. `linear` is empty where it
+    /// is not wanted.
+    fn decide_rows(
+        &mut self,
+        rendered: Rendered,
+        first: u32,
+        rgb: &mut [u8],
+        linear: &mut [Linear],
+    ) -> Result<u64, gpu::Error> {
+        let Area { left, top, width, .. } = self.renderer.area();
+        let pixels = rgb.as_chunks_mut::<3>().0;
+        let not_finite = self.decide(rendered, pixels.len(), |[x, y], levels, color| {
+            let at = (y - top - first) as usize * width as usize + (x - left) as usize;
+            pixels[at] = levels;
+            if let (Some(linear), Some(color)) = (linear.get_mut(at), color) {
+                *linear = color;
+            }
+        })?;
+        self.verifier.as_mut().map_or(Ok(()), |verifier| verifier.rows(top + first, rgb, linear))?;
+        Ok(not_finite)
     }
 }
 
@@ -215,13 +242,22 @@ impl<'a> Engine<'a> {
             Self::Cpu(cpu) => cpu.timed(rgb.len() / 3, |reference| reference.rows(first, rgb)),
             Self::Gpu(gpu) => {
                 let rendered = gpu.renderer.rows(first, rgb)?;
-                let Area { left, top, width, .. } = gpu.renderer.area();
-                let pixels = rgb.as_chunks_mut::<3>().0;
-                let not_finite = gpu.decide(rendered, pixels.len(), |[x, y], color| {
-                    pixels[(y - top - first) as usize * width as usize + (x - left) as usize] = color;
-                })?;
-                gpu.verifier.as_mut().map_or(Ok(()), |verifier| verifier.rows(top + first, rgb))?;
-                Ok(not_finite)
+                gpu.decide_rows(rendered, first, rgb, &mut [])
+            }
+        }
+    }
+
+    /// Likewise, with the colours of the same pixels before they are quantised.
+    ///
+    /// # Errors
+    ///
+    /// Also [`gpu::Error::Misuse`] where there is not one colour for each pixel, or the engine was not prepared with [`Options::linear`].
+    pub fn linear_rows(&mut self, first: u32, rgb: &mut [u8], linear: &mut [Linear]) -> Result<u64, gpu::Error> {
+        match self {
+            Self::Cpu(cpu) => cpu.timed(rgb.len() / 3, |reference| reference.linear_rows(first, rgb, linear)),
+            Self::Gpu(gpu) => {
+                let rendered = gpu.renderer.linear_rows(first, rgb, linear)?;
+                gpu.decide_rows(rendered, first, rgb, linear)
             }
         }
     }
@@ -257,6 +293,7 @@ impl<'a, O: Output> Engine<'a, O> {
                 let reference = Reference::new(&viewed, effects);
                 return Ok(Self::Cpu(Box::new(CpuEngine {
                     reference,
+                    is_linear: options.linear,
                     prepare: start.elapsed(),
                     render: Duration::ZERO,
                     tally: Tally::default(),
@@ -265,6 +302,9 @@ impl<'a, O: Output> Engine<'a, O> {
             }
         };
         let certified = matches!(backend, Backend::Certified(..));
+        if certified && options.linear {
+            return Err(Misuse::Picture("certified pictures are levels: no bound is kept for colours".into()).into());
+        }
         let options = &Options { certified, ..*options };
         let (renderer, mut lists) = if verify == Verify::Nothing && !certified {
             (GpuRenderer::with(gpu, &viewed, effects, tier, options)?, None)
@@ -294,6 +334,14 @@ impl<'a, O: Output> Engine<'a, O> {
             certifier.double_from = pixels;
         }
         self
+    }
+
+    /// Whether it was prepared for colours before they are quantised.
+    pub fn is_linear(&self) -> bool {
+        match self {
+            Self::Cpu(cpu) => cpu.is_linear,
+            Self::Gpu(gpu) => gpu.renderer.is_linear(),
+        }
     }
 
     /// The part of the picture that is rendered.
@@ -390,6 +438,8 @@ pub struct Band<'a> {
     pub first: u32,
     /// Its rows, 3 bytes a pixel.
     pub rgb: &'a [u8],
+    /// The colours of the same pixels before they are quantised, where the engine was prepared for them; otherwise empty.
+    pub linear: &'a [Linear],
 }
 
 /// Renders a picture, or the engine's part of it, band by band; returns how many pixels are not finite.
@@ -401,18 +451,24 @@ pub fn render_bands<E: From<gpu::Error>>(
     let row_bytes = width as usize * 3;
     // Bands are of whole tiles, so that none is rendered twice.
     let tiles = |bytes: usize| (bytes / (row_bytes * TILE as usize)).max(1) as u32;
-    let most = tiles(BAND_BYTES);
+    let is_linear = engine.is_linear();
+    let most = tiles(if is_linear { BAND_BYTES / LINEAR_PART } else { BAND_BYTES });
     let mut now = tiles(FIRST_BAND * 3).min(most);
-    let mut rgb = Vec::new();
+    let (mut rgb, mut linear) = (Vec::new(), Vec::new());
     let (mut first, mut not_finite) = (0, 0);
     while first < height {
         let above = (top + first) % TILE;
         let rows = (now.saturating_mul(TILE) - above).min(height - first);
         let (start, compile_ms) = (Instant::now(), engine.times().compile_ms);
         rgb.resize(row_bytes * rows as usize, 0);
-        not_finite += engine.rows(first, &mut rgb)?;
+        not_finite += if is_linear {
+            linear.resize(rgb.len() / 3, Linear::default());
+            engine.linear_rows(first, &mut rgb, &mut linear)?
+        } else {
+            engine.rows(first, &mut rgb)?
+        };
         let took = ms(start.elapsed()) - (engine.times().compile_ms - compile_ms);
-        sink(Band { first, rgb: &rgb })?;
+        sink(Band { first, rgb: &rgb, linear: &linear })?;
         first += rows;
         now = (f64::from(now) * (BAND_MS / took.max(1e-3)).min(2.0)).clamp(1.0, f64::from(most)) as u32;
     }

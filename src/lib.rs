@@ -90,6 +90,8 @@ pub mod import;
 #[doc(hidden)]
 pub mod limits;
 #[doc(hidden)]
+pub mod linear;
+#[doc(hidden)]
 pub mod mistakes;
 #[doc(hidden)]
 pub mod misuse;
@@ -136,7 +138,7 @@ pub use film::Picture;
 pub use glam::DVec3;
 pub use precision::Tier;
 pub use renderer::{Error, Renderer, Views};
-pub use scene::{Light, Scene, Sphere, Window};
+pub use scene::{Fov, Light, Scene, Sphere, Window};
 pub use settings::Settings;
 pub use verify::Verify;
 pub use view::View;

@@ -66,6 +66,12 @@ impl Quantize {
     pub fn levels(self, color: DVec3) -> [u8; 3] {
         color.to_array().map(|c| (self.scale() * c.clamp(0.0, 1.0) + self.bias()) as u8)
     }
+
+    /// The same rule with 16 bits: ⌊65535·c⌋, ⌊65535·c + ½⌋ or ⌊65535.9·c⌋.
+    pub fn levels16(self, color: DVec3) -> [u16; 3] {
+        let scale = self.scale() + (65535.0 - 255.0);
+        color.to_array().map(|c| (scale * c.clamp(0.0, 1.0) + self.bias()) as u16)
+    }
 }
 
 /// From where on shadow and reflection rays meet a surface. The one that they leave they meet at its analytic roots, 0 and −2B/A.

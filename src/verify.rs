@@ -9,11 +9,14 @@ use std::num::NonZero;
 use std::str::FromStr;
 use std::time::{Duration, Instant};
 
+use rayon::prelude::*;
+
 use crate::accel::{Acceleration, Cover};
 use crate::area::Area;
-use crate::cpu::{Finding, Judge, Reference};
+use crate::cpu::{Finding, Judge, Reference, Shown};
 use crate::effects::Effects;
 use crate::gpu::Error;
+use crate::linear::Linear;
 use crate::random::Random;
 use crate::scene::Scene;
 use crate::viewed::ViewedScene;
@@ -107,8 +110,8 @@ impl Verifier {
         (self.verified, self.took)
     }
 
-    /// Looks at those of the chosen pixels that are in these rows.
-    pub(crate) fn rows(&mut self, first: u32, rgb: &[u8]) -> Result<(), Error> {
+    /// Looks at those of the chosen pixels that are in these rows, and at their colours where there are any.
+    pub(crate) fn rows(&mut self, first: u32, rgb: &[u8], linear: &[Linear]) -> Result<(), Error> {
         let Area { left, width, .. } = self.reference.area();
         let count = (rgb.len() / (width as usize * 3)) as u32;
         let rows = first..first + count;
@@ -117,7 +120,33 @@ impl Verifier {
             None => rows.flat_map(|y| (left..left + width).map(move |x| [x, y])).collect(),
         };
         let levels = rgb.as_chunks::<3>().0;
-        self.compare(&here, |[x, y]| levels[(y - first) as usize * width as usize + (x - left) as usize])
+        let at = |[x, y]: [u32; 2]| (y - first) as usize * width as usize + (x - left) as usize;
+        self.compare(&here, |pixel| levels[at(pixel)])?;
+        if linear.is_empty() { Ok(()) } else { self.compare_colors(&here, |pixel| linear[at(pixel)]) }
+    }
+
+    /// Whether rounding explains the colours of these pixels, which have the right levels, or explained ones.
+    fn compare_colors(&mut self, pixels: &[[u32; 2]], color: impl Fn([u32; 2]) -> Linear + Sync) -> Result<(), Error> {
+        let Some(judge) = self.judge else { return Ok(()) };
+        let start = Instant::now();
+        let (expected, _) = self.reference.all_of_pixels(pixels)?;
+        let trial = judge.trial(&self.reference);
+        let is_wrong = |&(&[x, y], expected): &(&[u32; 2], &Shown)| {
+            let Linear { color, .. } = color([x, y]);
+            // What is no number is said otherwise.
+            color.is_finite()
+                && color != expected.linear.color
+                && trial.explain_color(x, y, color) == Finding::Unexplained
+        };
+        let wrong = pixels.par_iter().zip(&expected).find_first(is_wrong);
+        self.took += start.elapsed();
+        wrong.map_or(Ok(()), |(&[x, y], expected)| {
+            Err(Error::Wrong(format!(
+                "the device's picture is wrong: rounding does not explain the colour of x {x}, y {y}: {}, and the reference has {}",
+                color([x, y]).color,
+                expected.linear.color
+            )))
+        })
     }
 
     /// Looks at as many of these pixels as are chosen of a picture.

@@ -17,7 +17,9 @@ earlier runs have compiled; TRUERAY_PATIENCE=S gives a device up that has not an
 pub(super) const RENDER: &str = "\
 Examples:
   trueray render scene.txt -o scene.png
-  trueray render --convention exact --spp 16 --res 1920x1080 --stats scene.txt -o large.png";
+  trueray render --convention exact --spp 16 --res 1920x1080 --stats scene.txt -o large.png
+
+A name that ends in .exr or .pfm gets colours that are neither clamped nor quantised; --bits 16 is for PNG.";
 
 pub(super) const MERGE: &str = "\
 Examples:

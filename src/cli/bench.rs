@@ -62,6 +62,7 @@ pub(super) struct Args {
 
 /// Measures, and returns the exit code.
 pub(super) fn run(args: &Args) -> Result<u8, Failure> {
+    args.picture.check_window()?;
     let families = if args.families.is_empty() { FAMILIES.iter().collect() } else { args.families.clone() };
     if args.tune {
         args.reports.check(&mut Guard::default())?;
@@ -174,7 +175,7 @@ fn write_scenes(args: &Args, families: &[&Family], folder: &Path) -> Result<(), 
     for family in families {
         for &size in family.sizes.iter().filter(|&&size| family.spheres(size) <= args.max_spheres) {
             let mut scene = family.scene(size);
-            args.picture.resize(&mut scene);
+            args.picture.frame(&mut scene)?;
             let path = folder.join(family.file_stem(size)).with_extension("txt");
             save(&path, &scene.to_string())?;
             errln!("{}", crate::words::visible_path(&path));

@@ -8,7 +8,8 @@ use serde::Serialize;
 use super::failure::{Failure, OK, SCENE};
 use super::files::{check_place, json};
 use super::input::{Input, print_doubts};
-use super::named::{check_named, format_by_ending};
+use super::linear::FileFormat;
+use super::named::check_named;
 use super::options::PictureOptions;
 use super::output::{out, outln};
 use super::particles::ParticleOptions;
@@ -134,8 +135,10 @@ impl Contents {
 /// What `render` would say of the file that OUTPUT names, run in this folder.
 fn named_doubt(scene: &Scene) -> Option<String> {
     let path = Path::new(scene.output.as_ref()?);
-    let refused =
-        check_named(path).and_then(|()| check_place(path)).and_then(|()| format_by_ending(path).map(drop)).err()?;
+    let refused = check_named(path)
+        .and_then(|()| check_place(path))
+        .and_then(|()| FileFormat::by_ending(path).map(drop))
+        .err()?;
     Some(format!("without -o there is no picture: {}", refused.message.lines().next()?))
 }
 
@@ -159,10 +162,9 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
         };
         let mut doubts = Vec::new();
         if let Some(scene) = &mut input.parsed.scene {
-            doubts = args.picture.doubts(scene, &settings);
+            doubts = args.picture.frame_with_doubts(scene, &settings)?;
             // What `render` would say, run in this folder.
             doubts.extend(named_doubt(scene));
-            args.picture.resize(scene);
         }
         let warnings = input.parsed.warnings + doubts.len();
         let contents = input.parsed.scene.as_ref().map(|scene| Contents::new(scene, &args.picture, &settings));

@@ -306,7 +306,7 @@ fn load(args: &Args, scene: &Path) -> Result<Loaded, Failure> {
         return Err(Failure::new(USAGE, input.parsed.report(false).trim_end()));
     }
     let mut loaded = input.into_renderable(args.json)?;
-    args.picture.resize(&mut loaded.scene);
+    args.picture.frame(&mut loaded.scene)?;
     Ok(loaded)
 }
 

@@ -34,7 +34,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     Guard::new([&args.scene]).options([("--output", &Some(args.output.clone()))])?;
     let reading = args.particles.one_frame(args.picture.resolution())?;
     let mut loaded = Loaded::read(&args.scene, &reading, false)?;
-    args.picture.resize(&mut loaded.scene);
+    args.picture.frame(&mut loaded.scene)?;
     let (scene, settings) = (&loaded.scene, args.picture.settings()?);
     let viewed = scene.viewed(&settings);
     let effects = args.picture.effects(&viewed);

@@ -18,6 +18,7 @@ mod grade;
 mod guard;
 mod import;
 mod input;
+mod linear;
 mod manual;
 mod merge;
 mod named;

@@ -11,20 +11,25 @@ use crate::words::is_hidden;
 
 /// The format that the ending of a file's name says. Without an ending, and for devices and pipes, that is P6.
 pub(super) fn format_by_ending(path: &Path) -> Result<Format, Failure> {
+    format_or_refusal(path, ".ppm or .png")
+}
+
+/// Likewise; where the ending is none of those that are `known`, the refusal names them.
+pub(super) fn format_or_refusal(path: &Path, known: &str) -> Result<Format, Failure> {
     let is_open = path.extension().is_none() || fs::metadata(path).is_ok_and(|found| !found.is_file());
     match Format::from_extension(path) {
         Some(format) => Ok(format),
         None if is_open => Ok(Format::default()),
         None => {
-            let message = format!("{}: pictures are written as .ppm or .png, nothing else is known", path.display());
+            let message = format!("{}: pictures are written as {known}, nothing else is known", path.display());
             Err(Failure::new(USAGE, message))
         }
     }
 }
 
 /// Endings that a picture may have where a format is asked for.
-const OTHER_ENDINGS: [&str; 13] =
-    ["avif", "bmp", "dib", "exr", "gif", "hdr", "jpeg", "jpg", "pic", "tga", "tif", "tiff", "webp"];
+const OTHER_ENDINGS: [&str; 14] =
+    ["avif", "bmp", "dib", "exr", "gif", "hdr", "jpeg", "jpg", "pfm", "pic", "tga", "tif", "tiff", "webp"];
 
 /// Refuses a file that no picture of a stranger's scene should become, in the folder that it is written to.
 pub(super) fn check_named(path: &Path) -> Result<(), Failure> {
@@ -44,7 +49,7 @@ pub(super) fn check_named(path: &Path) -> Result<(), Failure> {
         return refused("a hidden file");
     }
     if !is_picture_name {
-        return refused("which is no picture's name: those end in .ppm or .png");
+        return refused("which is no picture's name: those end in .ppm, .png, .pfm or .exr");
     }
     match fs::symlink_metadata(path) {
         Err(_) => Ok(()),
@@ -53,7 +58,7 @@ pub(super) fn check_named(path: &Path) -> Result<(), Failure> {
             if begins_like_a_picture(path) {
                 Ok(())
             } else {
-                refused("over a file that does not begin like a PPM or PNG picture")
+                refused("over a file that does not begin like a PPM, PNG, PFM or EXR picture")
             }
         }
         Ok(_) => refused("which is no regular file"),
@@ -70,8 +75,8 @@ fn begins_like_a_picture(path: &Path) -> bool {
     let mut start = Vec::new();
     let read = File::open(path).and_then(|file| file.take(8).read_to_end(&mut start));
     match (read, start.as_slice()) {
-        (Ok(0), _) | (Ok(_), b"\x89PNG\r\n\x1a\n") => true,
-        (Ok(_), [b'P', b'3' | b'6', next, ..]) => next.is_ascii_whitespace() || *next == b'#',
+        (Ok(0), _) | (Ok(_), b"\x89PNG\r\n\x1a\n" | [0x76, b'/', b'1', 1, ..]) => true,
+        (Ok(_), [b'P', b'3' | b'6' | b'F' | b'f', next, ..]) => next.is_ascii_whitespace() || *next == b'#',
         _ => false,
     }
 }

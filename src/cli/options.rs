@@ -5,11 +5,12 @@ use super::output::errln;
 use clap::Args;
 use glam::DVec3;
 
+use crate::doubts::doubts;
 use crate::effects::{Effects, Request};
 use crate::gpu::{Choice, Error, Gpu};
 use crate::limits;
 use crate::precision::{self, Selection, Tier};
-use crate::scene::{Scene, resolution};
+use crate::scene::{Fov, Scene, resolution};
 use crate::settings::{Convention, Quantize, SampleOffset, Secondary, Settings, Specular};
 #[cfg(feature = "view")]
 use crate::view::View;
@@ -53,7 +54,7 @@ pub(super) struct PictureOptions {
     camera: CameraOptions,
 }
 
-/// The camera in place of the file's; the window stays the file's.
+/// The camera in place of the file's; without --fov the window stays the file's.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Camera")]
 struct CameraOptions {
@@ -66,13 +67,17 @@ struct CameraOptions {
     /// The direction that is upwards in the picture
     #[arg(long, value_name = "X,Y,Z", default_value = "0,1,0", allow_hyphen_values = true, value_parser = vector)]
     up: DVec3,
+    /// The vertical field of view, from the bottom to the top of the picture: a symmetric window at NEAR with square pixels in place of
+    /// LEFT, RIGHT, BOTTOM and TOP
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    fov: Option<Fov>,
 }
 
 impl PictureOptions {
     /// Where the eye is.
     pub(super) fn placement(&self) -> Placement {
-        let CameraOptions { eye, look_at, up } = self.camera;
-        Placement { eye, look_at, up }
+        let CameraOptions { eye, look_at, up, fov } = self.camera;
+        Placement { eye, look_at, up, fov }
     }
 
     /// Fails where the camera options define no view.
@@ -93,11 +98,11 @@ impl PictureOptions {
     #[cfg(feature = "view")]
     pub(super) fn view_state(&self, scene: &Scene, precision: precision::Request) -> Result<ViewState, Failure> {
         let settings = self.settings()?;
-        let CameraOptions { eye, look_at, up } = self.camera;
+        let CameraOptions { eye, look_at, up, fov } = self.camera;
         let pose =
             look_at.map_or_else(|| Pose::ahead(eye, up, FlightScale::of(scene)), |look_at| Pose { eye, look_at, up });
         let pose = (settings.view != View::FILE).then_some(pose);
-        Ok(ViewState { pose, settings, effects: self.effects.clone(), precision, res: self.res })
+        Ok(ViewState { pose, settings, effects: self.effects.clone(), precision, res: self.res, fov })
     }
 
     pub(super) fn effects(&self, viewed: &ViewedScene) -> Effects {
@@ -122,17 +127,31 @@ impl PictureOptions {
         Ok(effects)
     }
 
-    /// Doubts about the picture of a scene as the file has it, before [`Self::resize`].
-    pub(super) fn doubts(&self, scene: &Scene, settings: &Settings) -> Vec<String> {
-        crate::doubts::doubts(scene, settings, self.res)
+    /// Refuses `--fov`, where scenes are built in.
+    pub(super) fn check_window(&self) -> Result<(), Failure> {
+        match self.camera.fov {
+            Some(_) => Err(Failure::new(USAGE, "built-in scenes have windows of their own: --fov is for scene files")),
+            None => Ok(()),
+        }
     }
 
-    /// Applies `--res`.
-    pub(super) fn resize(&self, scene: &mut Scene) {
-        if let Some((width, height)) = self.res {
-            scene.width = width;
-            scene.height = height;
+    /// Applies `--res` and `--fov`.
+    pub(super) fn frame(&self, scene: &mut Scene) -> Result<(), Failure> {
+        (scene.width, scene.height) = self.res.unwrap_or((scene.width, scene.height));
+        let framed = self.camera.fov.map_or(Ok(()), |fov| scene.set_fov(fov));
+        framed.map_err(|error| Failure::new(USAGE, format!("--fov: {error}")))
+    }
+
+    /// Likewise; returns doubts about the picture.
+    pub(super) fn frame_with_doubts(&self, scene: &mut Scene, settings: &Settings) -> Result<Vec<String>, Failure> {
+        if self.camera.fov.is_some() {
+            self.frame(scene)?;
+            // Its pixels are square, whatever the size.
+            return Ok(doubts(scene, settings, None));
         }
+        let found = doubts(scene, settings, self.res);
+        self.frame(scene)?;
+        Ok(found)
     }
 }
 

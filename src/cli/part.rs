@@ -64,6 +64,11 @@ impl PartOptions {
         self.crop.is_some() || self.tile.is_some()
     }
 
+    /// Whether the file has to say what it is of.
+    pub(super) fn is_given(&self) -> bool {
+        self.is_part() || self.resume
+    }
+
     /// Refuses what has no place for a part.
     pub(super) fn check(&self, scenes: usize, output: Option<&Path>) -> Result<(), Failure> {
         let is_part = self.is_part();
@@ -96,7 +101,7 @@ impl PartOptions {
         (gpu, selection): (Option<&Gpu>, &Selection),
         format: Format,
     ) -> Result<Option<Note>, Failure> {
-        if !self.is_part() && !self.resume {
+        if !self.is_given() {
             return Ok(None);
         }
         if format == Format::P3 {

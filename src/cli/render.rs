@@ -12,7 +12,8 @@ use super::failure::{DEVICE_LOST, Failure, OK, STOPPED, USAGE};
 use super::files::{check_place, json, save};
 use super::guard::Guard;
 use super::input::{Loaded, print_doubts};
-use super::named::{check_named, format_by_ending};
+use super::linear::{Coding, FileFormat, Film, LinearOptions};
+use super::named::check_named;
 use super::options::{DeviceOptions, PictureOptions};
 use super::output::{err, errln};
 use super::part::PartOptions;
@@ -25,7 +26,7 @@ use crate::effects::Effects;
 use crate::engine::{
     Backend, Engine, Options, Output, Pixels, Rays, Stages, Times, device_name, ms, render_bands, render_partial,
 };
-use crate::film::{Format, PictureWriter, Target};
+use crate::film::{Format, Target};
 use crate::gpu::{Ahead, DeviceKind, Gpu};
 use crate::precision::{Request, Selection};
 use crate::sampling::Samples;
@@ -60,9 +61,11 @@ pub(super) struct Args {
     /// Picture file, a folder for it, or `-` for standard output; without it the file that OUTPUT names
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
     output: Option<PathBuf>,
-    /// File format: p6, p3 or png; without it the file name's ending decides
+    /// File format: p6, p3, png, pfm or exr; without it the file name's ending decides
     #[arg(long, value_name = "FORMAT", help_heading = "Output")]
-    format: Option<Format>,
+    format: Option<FileFormat>,
+    #[command(flatten)]
+    linear: LinearOptions,
     #[command(flatten)]
     aov: AovOptions,
     /// Print the picture to the terminal as well
@@ -105,7 +108,7 @@ pub(super) struct Args {
 struct Job {
     loaded: Loaded,
     target: Target,
-    format: Format,
+    coding: Coding,
 }
 
 /// Renders every scene; a scene with errors does not keep the others from being rendered, files that are in each other's way do.
@@ -224,6 +227,12 @@ impl Args {
         if self.quiet && self.progress != Style::Openjd { Style::None } else { self.progress }
     }
 
+    /// What is wanted beside 8-bit levels of a picture that is written like this.
+    fn options(&self, coding: Coding) -> Options {
+        let wants_stats = self.stats || self.stats_json.is_some();
+        Options { linear: coding.is_linear(), count_rays: wants_stats && !self.no_ray_counts, ..Options::default() }
+    }
+
     /// What of this scene can be done before the device is open.
     fn ahead(&self, scene: &Scene, settings: &Settings) -> Option<Ahead> {
         if !self.device.uses_vulkan() {
@@ -241,20 +250,21 @@ const MAYBE_COMPILED_MS: f64 = 40.0;
 fn render_one(
     args: &Args,
     settings: &Settings,
-    Job { mut loaded, target, format }: Job,
+    Job { mut loaded, target, coding }: Job,
     gpu: Option<&Gpu>,
     guard: &mut Guard,
     [open_time, ready_time]: [Duration; 2],
 ) -> Result<Option<Stats>, Failure> {
     let _span = tracing::info_span!("picture", scene = %loaded.name).entered();
     let start = Instant::now();
+    let doubts = args.picture.frame_with_doubts(&mut loaded.scene, settings)?;
     if !args.quiet {
-        print_doubts(&loaded.name, &args.picture.doubts(&loaded.scene, settings));
+        print_doubts(&loaded.name, &doubts);
     }
-    args.picture.resize(&mut loaded.scene);
     let scene = &loaded.scene;
     let choice = args.sampling.choice((scene.width, scene.height))?;
     let area = args.part.area((scene.width, scene.height))?;
+    coding.check_size(area.size())?;
     let viewed = scene.viewed(settings).within(area)?;
     let effects = args.picture.renderable_effects(&viewed)?;
     let selection = args.device.selection(gpu, &viewed, &effects);
@@ -262,13 +272,13 @@ fn render_one(
         explain(&loaded.name, &effects, &selection, choice.as_ref(), gpu);
     }
     let backend = Backend::of(gpu, &selection);
-    let note = args.part.note(scene, area, (settings, &effects), (gpu, &selection), format)?;
+    let note = |format| args.part.note(scene, area, (settings, &effects), (gpu, &selection), format);
+    let note = coding.levels().map_or(Ok(None), note)?;
     if note.as_ref().map_or(Ok(false), |note| note.is_done(&target, args.quiet))? {
         return Ok(None);
     }
 
-    let wants_stats = args.stats || args.stats_json.is_some();
-    let options = Options { count_rays: wants_stats && !args.no_ray_counts, ..Options::default() };
+    let options = args.options(coding);
     let verify = args.verify.unwrap_or_else(|| Verify::usual(scene));
     let mut beside = Beside::new(&args.aov, args.show, &viewed, &effects, gpu.is_some())?;
     let mut renderer = match choice {
@@ -279,10 +289,10 @@ fn render_one(
     // The renderer has what it needs: the spheres go before paths and pixels take memory.
     let (width, height) = area.size();
     let (spheres, lights) = (scene.spheres.len(), scene.lights.len());
+    let levels = (settings.quantize, scene.background);
     drop(loaded.scene);
 
-    let mut writer =
-        PictureWriter::with_note(&target, format, (width, height), note.as_ref().map(|note| note.line.as_str()))?;
+    let mut writer = Film::new(coding, &target, (width, height), note.as_ref().map(|note| note.line.as_str()), levels)?;
     let mut write_time = Duration::ZERO;
     let mut progress = Progress::of_rows(args.progress_style(), &loaded.name, height);
     let mut sampled = None;
@@ -293,7 +303,7 @@ fn render_one(
             let picture = render_partial(engine, backend, &samples, fill, |part| progress.set(part))?;
             let _span = tracing::info_span!("write rows").entered();
             let start = Instant::now();
-            writer.write_rows(&picture.rgb)?;
+            writer.write(&picture.rgb, &[])?;
             beside.add(&picture.rgb);
             write_time += start.elapsed();
             let pixels = samples.pixels().len() as u64;
@@ -303,7 +313,7 @@ fn render_one(
         Renderer::Whole(engine) => render_bands(engine, |band| {
             let _span = tracing::info_span!("write rows").entered();
             let start = Instant::now();
-            writer.write_rows(band.rgb)?;
+            writer.write(band.rgb, band.linear)?;
             write_time += start.elapsed();
             certificate.add(band.rgb);
             beside.add(band.rgb);
@@ -414,19 +424,31 @@ fn job(args: &Args, loaded: Loaded, target: Target) -> Result<Job, Failure> {
         }
         check_place(path)?;
     }
-    let format = format_of(args, &target).map_err(|failure| failure.of(&loaded.name))?;
-    Ok(Job { loaded, target, format })
+    let coding = coding_of(args, &target).map_err(|failure| failure.of(&loaded.name))?;
+    Ok(Job { loaded, target, coding })
 }
 
 /// How the picture is written.
-fn format_of(args: &Args, target: &Target) -> Result<Format, Failure> {
-    match (args.format, target) {
+fn coding_of(args: &Args, target: &Target) -> Result<Coding, Failure> {
+    let format = match (args.format, target) {
         (Some(format), _) => Ok(format),
-        (None, Target::Stdout) => Ok(Format::default()),
-        (None, Target::File(path)) => format_by_ending(path).map_err(|mut failure| {
-            failure.message += "\n  help: --format p6, p3 or png writes that under any name";
+        (None, Target::Stdout) => Ok(FileFormat::Levels(Format::default())),
+        (None, Target::File(path)) => FileFormat::by_ending(path).map_err(|mut failure| {
+            failure.message += "\n  help: --format p6, p3, png, pfm or exr writes that under any name";
             failure
         }),
+    };
+    let coding = args.linear.coding(format?)?;
+    let is_certified = args.device.precision == Request::Certified;
+    let refused = [
+        (is_certified, "--precision certified, which is of 8-bit levels"),
+        (args.certificate.is_some(), "--certificate, which is of 8-bit levels"),
+        (args.sampling.is_given(), "--foveate or --sparse"),
+        (args.part.is_given(), "--crop, --tile or --resume"),
+    ];
+    match refused.into_iter().find(|(is_given, _)| coding.is_linear() && *is_given) {
+        Some((_, what)) => Err(Failure::new(USAGE, format!("PFM, EXR, --bits 16 and --alpha do not go with {what}"))),
+        None => Ok(coding),
     }
 }
 

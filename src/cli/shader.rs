@@ -37,7 +37,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     }
     let settings = args.picture.settings()?;
     let mut loaded = Loaded::read(&args.scene, &Reading::usual(args.picture.resolution()), false)?;
-    args.picture.resize(&mut loaded.scene);
+    args.picture.frame(&mut loaded.scene)?;
     let scene = &loaded.scene;
     let is_in_part = args.sampling.choice((scene.width, scene.height))?.is_some();
     let viewed = scene.viewed(&settings);

@@ -78,7 +78,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let parts = args.scenes.len() as f64;
     for (number, path) in args.scenes.iter().enumerate() {
         let mut loaded = Loaded::read(path, &Reading::usual(args.picture.resolution()), false)?;
-        args.picture.resize(&mut loaded.scene);
+        args.picture.frame(&mut loaded.scene)?;
         let scene = &loaded.scene;
         let deepest = plan.depths.iter().copied().fold(settings.max_depth, u32::max);
         args.picture.renderable_effects(&scene.viewed(&Settings { max_depth: deepest, ..settings }))?;

@@ -101,7 +101,7 @@ fn verify(args: &Args) -> Result<u8, Failure> {
         return Err(Failure::new(USAGE, input.parsed.report(false).trim_end()));
     }
     let mut loaded = input.into_renderable(args.json)?;
-    args.options.resize(&mut loaded.scene);
+    args.options.frame(&mut loaded.scene)?;
     let scene = &loaded.scene;
     let (name, encoded) = open(&args.picture)?;
     let (width, height) = encoded.size().map_err(unreadable)?;

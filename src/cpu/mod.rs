@@ -42,5 +42,6 @@ pub use pick::{PrimaryHit, picked};
 pub use real::Real;
 #[doc(hidden)]
 pub use render::Bounded;
+pub(crate) use render::Shown;
 pub use render::{Reference, Tally};
 pub(crate) use vec3::Vec3;

@@ -34,13 +34,17 @@ impl<T: Real> Reference<T> {
                 // No ray of the tile meets a sphere.
                 return self.world.background;
             }
+            let hits = tally.hits;
             let color = self.bounded_color(&primary, bound, tally);
             if bound.unsure.is_none() {
                 return color;
             }
             let (mut decisions, is_open) = self.decide(&primary);
             (more_bits, undecided) = (true, undecided | is_open);
-            trace(&self.world, &primary, &mut decisions)
+            let mut decided = Tally::default();
+            let color = trace(&self.world, &primary, &mut (&mut decisions, &mut decided));
+            tally.hits = hits + decided.hits;
+            color
         });
         let color = resolve(samples, side);
         tally.more_bits += u64::from(more_bits);

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::bound::Bound;
 use super::dd::Dd;
 use super::decision::Decision;
-use super::intersect::{Own, Primary, Ray};
+use super::intersect::{Hit, Own, Primary, Range, Ray};
 use super::real::Real;
 use super::scene::World;
 use super::trace::trace;
@@ -18,7 +18,8 @@ use crate::accel::{Acceleration, Rounding};
 use crate::area::Area;
 use crate::camera::Camera;
 use crate::effects::Effects;
-use crate::misuse::{Misuse, check_pixels, check_rows};
+use crate::linear::Linear;
+use crate::misuse::{Misuse, check_colors, check_pixels, check_rows};
 use crate::settings::Quantize;
 use crate::stop;
 use crate::viewed::ViewedScene;
@@ -109,29 +110,58 @@ impl<T: Real> Reference<T> {
     ///
     /// [`Misuse::Rows`] where these are no rows of it.
     pub fn rows(&self, first: u32, rgb: &mut [u8]) -> Result<Tally, Misuse> {
+        check_rows(self.area().size(), first, rgb.len())?;
+        Ok(self.shown_rows(first, rgb.as_chunks_mut::<3>().0, |shown| shown.levels))
+    }
+
+    /// Likewise, with the colours of the same pixels before they are quantised.
+    ///
+    /// # Errors
+    ///
+    /// Also [`Misuse::Colors`] where there is not one colour for each pixel.
+    pub fn linear_rows(&self, first: u32, rgb: &mut [u8], linear: &mut [Linear]) -> Result<Tally, Misuse> {
+        check_rows(self.area().size(), first, rgb.len())?;
+        check_colors(rgb.len() / 3, linear.len())?;
+        let mut all = vec![Shown::default(); linear.len()];
+        let tally = self.shown_rows(first, &mut all, |shown| shown);
+        for ((shown, levels), linear) in all.iter().zip(rgb.as_chunks_mut::<3>().0).zip(linear) {
+            (*levels, *linear) = (shown.levels, shown.linear);
+        }
+        Ok(tally)
+    }
+
+    /// Renders pixels of whole rows from row `first` on, each as `show` has it.
+    fn shown_rows<P: Send>(&self, first: u32, pixels: &mut [P], show: impl Fn(Shown) -> P + Sync) -> Tally {
         // A few hundred pixels a task balance the load and keep the cost of a task invisible.
         const CHUNK: usize = 256;
         let Area { left, top, .. } = self.area();
-        check_rows(self.area().size(), first, rgb.len())?;
         let width = self.area().width as usize;
-        let samples = u64::from(self.camera.samples_per_side() * self.camera.samples_per_side());
-        let chunk = |(chunk, pixels): (usize, &mut [u8])| {
+        let chunk = |(chunk, pixels): (usize, &mut [P])| {
             let (mut tally, mut bound) = (Tally::default(), self.bound());
             // What is rendered after that is thrown away.
             if stop::is_asked() {
                 return tally;
             }
-            for (k, pixel) in pixels.as_chunks_mut::<3>().0.iter_mut().enumerate() {
+            for (k, pixel) in pixels.iter_mut().enumerate() {
                 let index = chunk * CHUNK + k;
                 let (i, j) = (left + (index % width) as u32, top + first + (index / width) as u32);
-                let color = self.proven_color(i, j, &mut bound, &mut tally);
-                tally.primary += samples;
-                tally.not_finite += u64::from(!color.to_f64().is_finite());
-                *pixel = Levels::new(self.quantize).levels(color);
+                *pixel = show(self.shown(i, j, &mut bound, &mut tally));
             }
             tally
         };
-        Ok(rgb.par_chunks_mut(CHUNK * 3).enumerate().map(chunk).reduce(Tally::default, Tally::plus))
+        pixels.par_chunks_mut(CHUNK).enumerate().map(chunk).reduce(Tally::default, Tally::plus)
+    }
+
+    /// What a pixel shows.
+    #[inline]
+    fn shown(&self, i: u32, j: u32, bound: &mut Bound<T, true>, tally: &mut Tally) -> Shown {
+        let samples = u64::from(self.camera.samples_per_side() * self.camera.samples_per_side());
+        let before = tally.hits;
+        let color = self.proven_color(i, j, bound, tally);
+        let linear = Linear { color: color.to_f64(), coverage: (tally.hits - before) as f64 / samples as f64 };
+        tally.primary += samples;
+        tally.not_finite += u64::from(!linear.color.is_finite());
+        Shown { levels: Levels::new(self.quantize).levels(color), linear }
     }
 
     /// Renders the pixels in these columns and rows, each with the value that it has in the full picture, in parallel.
@@ -141,15 +171,29 @@ impl<T: Real> Reference<T> {
     /// [`Misuse::Pixel`] where a pixel is not of the picture, [`Misuse::Colors`] where there is not one colour for each.
     pub fn pixels(&self, pixels: &[[u32; 2]], colors: &mut [[u8; 3]]) -> Result<Tally, Misuse> {
         check_pixels(self.area(), pixels, colors.len())?;
-        let samples = u64::from(self.camera.samples_per_side() * self.camera.samples_per_side());
-        let each = |(&[i, j], target): (&[u32; 2], &mut [u8; 3])| {
+        Ok(self.shown_pixels(pixels, colors, |shown| shown.levels))
+    }
+
+    /// Likewise, all that they show.
+    ///
+    /// # Errors
+    ///
+    /// [`Misuse::Pixel`] where a pixel is not of the picture.
+    pub(crate) fn all_of_pixels(&self, pixels: &[[u32; 2]]) -> Result<(Vec<Shown>, Tally), Misuse> {
+        check_pixels(self.area(), pixels, pixels.len())?;
+        let mut all = vec![Shown::default(); pixels.len()];
+        let tally = self.shown_pixels(pixels, &mut all, |shown| shown);
+        Ok((all, tally))
+    }
+
+    /// Renders pixels, each as `show` has it.
+    fn shown_pixels<P: Send>(&self, pixels: &[[u32; 2]], targets: &mut [P], show: impl Fn(Shown) -> P + Sync) -> Tally {
+        let each = |(&[i, j], target): (&[u32; 2], &mut P)| {
             let mut tally = Tally::default();
-            let color = self.proven_color(i, j, &mut self.bound(), &mut tally);
-            *target = Levels::new(self.quantize).levels(color);
-            let not_finite = u64::from(!color.to_f64().is_finite());
-            tally.plus(Tally { primary: samples, not_finite, ..Tally::default() })
+            *target = show(self.shown(i, j, &mut self.bound(), &mut tally));
+            tally
         };
-        Ok(pixels.par_iter().zip(colors).with_min_len(256).map(each).reduce(Tally::default, Tally::plus))
+        pixels.par_iter().zip(targets).with_min_len(256).map(each).reduce(Tally::default, Tally::plus)
     }
 }
 
@@ -214,6 +258,13 @@ pub struct Bounded {
     pub doubt: Option<Decision>,
 }
 
+/// What a pixel shows.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Shown {
+    pub(crate) levels: [u8; 3],
+    pub(crate) linear: Linear,
+}
+
 /// What rendering some rows came to.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Tally {
@@ -221,6 +272,8 @@ pub struct Tally {
     pub not_finite: u64,
     /// Rays from the eye.
     pub primary: u64,
+    /// Those of them that have hit something.
+    pub hits: u64,
     /// Rays towards lights.
     pub shadow: u64,
     /// Reflected and refracted rays.
@@ -238,6 +291,7 @@ impl Tally {
         Self {
             not_finite: self.not_finite + other.not_finite,
             primary: self.primary + other.primary,
+            hits: self.hits + other.hits,
             shadow: self.shadow + other.shadow,
             reflection: self.reflection + other.reflection,
             more_bits: self.more_bits + other.more_bits,
@@ -247,6 +301,18 @@ impl Tally {
 }
 
 impl<T: Real> Witness<T> for Tally {
+    fn nearest(
+        &mut self,
+        _world: &World<T>,
+        _ray: &Ray<T>,
+        own: Option<&Own<T>>,
+        _range: &Range<T>,
+        hit: Option<Hit<T>>,
+    ) -> Option<Hit<T>> {
+        self.hits += u64::from(own.is_none() && hit.is_some());
+        hit
+    }
+
     fn blocked(&mut self, _world: &World<T>, _ray: &Ray<T>, _own: &Own<T>, is_blocked: bool) -> bool {
         self.shadow += 1;
         is_blocked

@@ -25,7 +25,7 @@ impl Engine<'_, Pixels> {
                 if !rendered.unsure.is_empty() || !rendered.cut.is_empty() {
                     pixels.iter().enumerate().for_each(|(place, &pixel)| places.entry(pixel).or_default().push(place));
                 }
-                let not_finite = gpu.decide(rendered, pixels.len(), |pixel, color| {
+                let not_finite = gpu.decide(rendered, pixels.len(), |pixel, color, _| {
                     places.get(&pixel).into_iter().flatten().for_each(|&place| colors[place] = color);
                 })?;
                 gpu.verifier.as_mut().map_or(Ok(()), |verifier| verifier.list(pixels, colors))?;

@@ -1,4 +1,4 @@
-//! Pictures in memory and in files: PPM (P6 and P3) and PNG, 8 bits a channel.
+//! Pictures in memory and in files: PPM (P6 and P3) and PNG, 8 bits a channel; and colours that are no levels yet, in files alone.
 //!
 //! Files are byte-deterministic: the same pixels always give the same bytes, without dates or names in them; a note of what they
 //! are of is there only where it is asked for.
@@ -6,6 +6,7 @@
 //! [`read_picture`] recognises a file by its contents and is strict unless told otherwise.
 
 mod exr;
+mod linear;
 mod pfm;
 mod png;
 mod ppm;
@@ -19,6 +20,7 @@ use std::path::Path;
 use std::str::FromStr;
 
 pub(crate) use exr::encode_exr;
+pub use linear::{Container, LinearFormat, LinearPicture, MOST_LINEAR_PIXELS};
 pub(crate) use pfm::encode_pfm;
 pub use problem::{FilePosition, Problem, ProblemKind, ReadError, SamplePosition, Warning};
 pub use read::{Encoded, Leniency, Reading, decode, read_picture};

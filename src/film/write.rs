@@ -42,7 +42,7 @@ impl Target {
         self.error("choose the format of", io::Error::new(io::ErrorKind::InvalidInput, why))
     }
 
-    fn error(&self, attempted: &'static str, source: io::Error) -> OutputError {
+    pub(super) fn error(&self, attempted: &'static str, source: io::Error) -> OutputError {
         OutputError { target: self.clone(), attempted, source }
     }
 }
@@ -375,7 +375,9 @@ impl Encoder {
                 write!(output, "P3\n{comment}{width} {height}\n255\n")?;
                 Ok(Self::P3(Plain::new(output, width)))
             }
-            Format::Png => Ok(Self::Png(Box::new(png_writer(output, width, height, note)?.into_stream_writer()?))),
+            Format::Png => {
+                Ok(Self::Png(Box::new(png_writer(output, (width, height), RGB8, note)?.into_stream_writer()?)))
+            }
         }
     }
 
@@ -400,24 +402,37 @@ impl Encoder {
 /// # Errors
 /// More or fewer samples than the picture has.
 pub fn encode_png(width: u32, height: u32, rgb: &[u8]) -> io::Result<Vec<u8>> {
+    encode_png_of((width, height), RGB8, rgb)
+}
+
+/// The bytes of a PNG file of such samples.
+///
+/// # Errors
+/// More or fewer samples than the picture has.
+pub(super) fn encode_png_of(size: (u32, u32), kind: Kind, samples: &[u8]) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    let mut writer = png_writer(&mut bytes, width, height, None)?;
+    let mut writer = png_writer(&mut bytes, size, kind, None)?;
     let mut stream = writer.stream_writer()?;
-    stream.write_all(rgb)?;
+    stream.write_all(samples)?;
     stream.finish()?;
     writer.finish()?;
     Ok(bytes)
 }
 
+/// The channels of a PNG, and the bits of each.
+type Kind = (png::ColorType, png::BitDepth);
+
+const RGB8: Kind = (png::ColorType::Rgb, png::BitDepth::Eight);
+
 fn png_writer<W: Write>(
     output: W,
-    width: u32,
-    height: u32,
+    (width, height): (u32, u32),
+    (color, depth): Kind,
     note: Option<&str>,
 ) -> Result<png::Writer<W>, png::EncodingError> {
     let mut encoder = png::Encoder::new(output, width, height);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_color(color);
+    encoder.set_depth(depth);
     encoder.set_compression(png::Compression::Fast);
     if let Some(note) = note {
         encoder.add_itxt_chunk(NOTE.to_owned(), note.to_owned())?;

@@ -32,6 +32,7 @@ use crate::gpu::shared::{ONE_PATH, SEVERAL_PATHS, dispatch_tiles};
 use crate::gpu::table::bind::{are_too_large, check_fits, copies_fit, copy_resources, list_resources, scene_resources};
 use crate::gpu::table::pack::{Packed, list_contents};
 use crate::limits;
+use crate::linear::Linear;
 use crate::misuse::check_picture;
 use crate::precision::Tier;
 use crate::tiles::TILE;
@@ -59,6 +60,8 @@ const MAX_PATHS: u64 = 1 << 24;
 pub struct Options {
     /// Asks of which pixels the kernel is unsure, which it says in kernels of its own.
     pub certified: bool,
+    /// Asks for the colours of pixels, too, before they are quantised; with pictures that are not certified.
+    pub linear: bool,
     /// Counts shadow and reflection rays, which a device does in kernels of its own.
     pub count_rays: bool,
     /// Reads the device's own clock, if it has one.
@@ -135,7 +138,7 @@ pub struct GpuRenderer<'a, O = Rows> {
     samples: u64,
     /// Tiles of the whole picture that any sphere may cover, or of as many pixels of a list; no band has more.
     covered_tiles: u64,
-    background: [u8; 3],
+    background: ([u8; 3], Linear),
     max_depth: u32,
     /// Parts that the device's threads take of a dispatch.
     hands: usize,
@@ -232,6 +235,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         let specialisation = Specialisation {
             slots: O::SLOTS,
             certified: options.certified,
+            linear: options.linear,
             count_rays: options.count_rays,
             dispatch_tiles: dispatch_tiles(gpu.device.info.max_uniform),
             ..Specialisation::new(viewed, effects, kernel, tuning, tables)
@@ -283,6 +287,8 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
             None => tuning.first_dispatch_tests as u64 / tests_per_pixel.saturating_mul(TILE_PIXELS as u64),
             Some(ms) => (tuning.dispatch_ms / (ms * TILE_PIXELS as f64).max(1e-9)) as u64,
         };
+        let color = if kernel.is_double() { scene.background } else { scene.background.as_vec3().as_dvec3() };
+        let background = Linear { color, coverage: 0.0 };
         let renderer = Self {
             gpu,
             output: PhantomData,
@@ -291,7 +297,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
             tile_words: TileWords::new(scene.width),
             samples,
             covered_tiles,
-            background: settings.quantize.levels(scene.background),
+            background: (settings.quantize.levels(scene.background), background),
             max_depth: effects.depth,
             hands: match gpu.device.info.kind.class() {
                 Class::Software => std::thread::available_parallelism().map_or(1, NonZero::get),
@@ -332,6 +338,11 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
     /// The part of the picture that it renders.
     pub fn area(&self) -> Area {
         self.cover.area()
+    }
+
+    /// Whether it has colours of pixels before they are quantised.
+    pub fn is_linear(&self) -> bool {
+        self.inputs.specialisation.linear
     }
 
     /// Times of the work so far.
@@ -382,7 +393,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         let info = &self.gpu.device.info;
         let specialisation = &self.inputs.specialisation;
         let path = 2 * specialisation.path_size() * u64::from(specialisation.keeps_paths());
-        let color = if self.samples > 1 { specialisation.color_size() } else { 4 };
+        let color = if specialisation.keeps_colors() { specialisation.color_size() } else { 4 };
         let count = if specialisation.count_rays { RAY_COUNT_SIZE } else { 0 };
         let slots = TILE_PIXELS as u64 * self.samples;
         let bytes =

@@ -41,6 +41,9 @@ pub(super) const STATUS_UNSURE: u8 = 4;
 /// All of them.
 pub(super) const STATUS_FLAGS: u8 = 7;
 
+/// Above a status byte, in the number that a sample's colour is kept with: its primary ray hits something.
+pub(super) const STATUS_HIT: u32 = 256;
+
 /// What an answer to a ray of a batch says, bit by bit.
 pub(super) const PROBE_FOUND: u32 = 1;
 pub(super) const PROBE_INSIDE: u32 = 2;
@@ -73,7 +76,7 @@ pub(super) fn declaration(name: &str, scalar: Scalar) -> Option<String> {
     }
     Some(by_name!(
         whole: TILE TILE_PIXELS SMALL_GROUP ROW_BITS WORKGROUP_WORDS ONE_PATH SEVERAL_PATHS STATUS_NOT_FINITE STATUS_CUT
-            STATUS_UNSURE STATUS_FLAGS PROBE_FOUND PROBE_INSIDE PROBE_FINITE PROBE_FACING PROBE_BLOCKED POINT_VALUES MAX_LARGE
+            STATUS_UNSURE STATUS_FLAGS STATUS_HIT PROBE_FOUND PROBE_INSIDE PROBE_FINITE PROBE_FACING PROBE_BLOCKED POINT_VALUES MAX_LARGE
             NO_SAMPLE UNIT_WEIGHT;
         real: REACH WALK_SLACK ANGLE AXES LENGTH LOCAL LOST NEAR NOTHING POWER ROOT ROOT_AT_EDGE SQUARE TERM
     ))

@@ -89,34 +89,14 @@ impl Scene {
     ///
     /// The first number that it may not have.
     pub fn check(&self) -> Result<(), Invalid> {
-        let Window { near, left, right, bottom, top } = self.window;
-        let invalid = |of: &str, field, number, expected| Invalid { of: of.into(), field, number, expected };
         for (field, side) in [("width", self.width), ("height", self.height)] {
             if !(1..=MAX_RESOLUTION).contains(&side) {
                 return Err(invalid("the picture", field, side.into(), "expected 1 to 16777216 pixels"));
             }
         }
-        let singles = [
-            (Keyword::Near, &[near][..]),
-            (Keyword::Left, &[left]),
-            (Keyword::Right, &[right]),
-            (Keyword::Bottom, &[bottom]),
-            (Keyword::Top, &[top]),
-            (Keyword::Back, self.background.as_ref()),
-            (Keyword::Ambient, self.ambient.as_ref()),
-        ];
-        for (keyword, numbers) in singles {
-            check(keyword.form().fields, numbers, || keyword.text().into())?;
-        }
-        for (field, from, to) in [("right", left, right), ("top", bottom, top)] {
-            if from == to || !(to - from).is_finite() {
-                return Err(invalid(
-                    "the window",
-                    field,
-                    to,
-                    "expected another number than at the opposite edge, not too far from it",
-                ));
-            }
+        self.check_window()?;
+        for (keyword, numbers) in [(Keyword::Back, self.background), (Keyword::Ambient, self.ambient)] {
+            check(keyword.form().fields, numbers.as_ref(), || keyword.text().into())?;
         }
         let spheres = self.spheres.par_iter().enumerate().map(|(index, sphere)| {
             let Sphere { center: p, scale: s, color: c, ka, kd, ks, kr, n, kt, eta } = *sphere;
@@ -128,6 +108,32 @@ impl Scene {
             check(Keyword::Light.form().fields, &[p.x, p.y, p.z, i.x, i.y, i.z], || format!("light {index}"))
         })
     }
+
+    /// The same of the window alone.
+    pub(super) fn check_window(&self) -> Result<(), Invalid> {
+        let Window { near, left, right, bottom, top } = self.window;
+        let edges = [
+            (Keyword::Near, near),
+            (Keyword::Left, left),
+            (Keyword::Right, right),
+            (Keyword::Bottom, bottom),
+            (Keyword::Top, top),
+        ];
+        for (keyword, number) in edges {
+            check(keyword.form().fields, &[number], || keyword.text().into())?;
+        }
+        for (field, from, to) in [("right", left, right), ("top", bottom, top)] {
+            if from == to || !(to - from).is_finite() {
+                let expected = "expected another number than at the opposite edge, not too far from it";
+                return Err(invalid("the window", field, to, expected));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn invalid(of: &str, field: &'static str, number: f64, expected: &'static str) -> Invalid {
+    Invalid { of: of.into(), field, number, expected }
 }
 
 fn check(fields: &'static [Field], numbers: &[f64], of: impl FnOnce() -> String) -> Result<(), Invalid> {

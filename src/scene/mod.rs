@@ -5,6 +5,7 @@
 mod check;
 mod diagnostics;
 mod foreign;
+mod fov;
 mod model;
 mod parse;
 mod write;
@@ -13,6 +14,7 @@ pub use check::{Invalid, SceneError};
 pub(crate) use diagnostics::{Collector, Detail, Line, Location, Span, Topic, render as show_diagnostics, shown};
 pub use diagnostics::{Diagnostic, Omitted, Severity};
 pub use foreign::foreign_kind;
+pub use fov::Fov;
 pub use model::{Light, MAX_RESOLUTION, Names, Scene, Sphere, Window, resolution};
 pub(crate) use parse::{Fault, first_line, is_statement, parse_number};
 pub use parse::{Parsed, parse};

@@ -45,6 +45,7 @@ impl ViewState {
         if let Some((width, height)) = size {
             options.push(format!("--res {width}x{height}"));
         }
+        options.extend(self.fov.map(|fov| format!("--fov {:?}", fov.degrees())));
         options.extend(self.pose.map(|pose| pose.options()).filter(|pose| !pose.is_empty()));
         options.join(" ")
     }

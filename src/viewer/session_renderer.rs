@@ -24,7 +24,7 @@ use crate::limits;
 use crate::precision::{Selection, Tier};
 use crate::scene::Scene;
 use crate::settings::Settings;
-use coarse::fitted;
+use coarse::{Framing, fitted, framed};
 use pass::{FrameStats, Pass};
 use reduced::{MANY_SPHERES, Reduced};
 
@@ -52,6 +52,37 @@ struct Job {
     map: Option<Arc<PreviewMap>>,
     /// Time that all this took, in ms; counted with the first picture.
     took: f64,
+}
+
+impl Job {
+    /// How its pictures are framed.
+    fn framing(&self) -> Framing {
+        (self.size, self.view.fov)
+    }
+}
+
+/// What is decided before a picture is rendered.
+struct Plan {
+    effects: Effects,
+    selection: Selection,
+    /// Why there can be no picture.
+    problem: Option<String>,
+}
+
+impl Plan {
+    /// For `scene` as `view` asks for it.
+    fn of(scene: &mut Scene, settings: &Settings, view: &ViewState, gpu: Option<&Gpu>) -> Self {
+        let size = (scene.width, scene.height);
+        let framing = view.fov.and_then(|fov| Scene::new(fov.window(scene.window.near, size), 1, 1).check().err());
+        framed(scene, (size, view.fov), |scene| {
+            let viewed = scene.viewed(settings);
+            let effects = Effects::requested(&viewed, &view.effects);
+            let selection = Selection::of(&viewed, &effects, view.precision, gpu.map_or(&Tier::ALL[..], Gpu::ladder));
+            let refused = || effects.too_deep(scene).or_else(|| limits::problem(&viewed, &effects));
+            let problem = framing.map(|error| format!("--fov: {error}")).or_else(refused);
+            Self { effects, selection, problem }
+        })
+    }
 }
 
 /// A page's picture and what it takes to render it.
@@ -195,10 +226,7 @@ impl<'g> SessionRenderer<'g> {
         let settings = view.settings();
         let asked = view.size(context.scene);
         let size = fitted(asked, context.pixels);
-        let viewed = context.scene.viewed(&settings);
-        let effects = Effects::requested(&viewed, &view.effects);
-        let ladder = self.gpu.map_or(&Tier::ALL[..], Gpu::ladder);
-        let selection = Selection::of(&viewed, &effects, view.precision, ladder);
+        let Plan { effects, selection, problem } = Plan::of(context.scene, &settings, &view, self.gpu);
         if self.canvas.size() != size {
             self.canvas = Canvas::new(size);
         }
@@ -226,7 +254,6 @@ impl<'g> SessionRenderer<'g> {
             step = if worth_it { (step / 4).max(1) } else { 1 };
         }
         passes.extend(coarse.into_iter().rev());
-        let problem = effects.too_deep(context.scene).or_else(|| limits::problem(&viewed, &effects));
         if problem.is_some() {
             // The last picture stays.
             passes.clear();

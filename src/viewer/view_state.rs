@@ -4,7 +4,7 @@ use super::pose::{FlightScale, Pose};
 use super::requests::PageRequest;
 use crate::effects;
 use crate::precision;
-use crate::scene::{Scene, resolution};
+use crate::scene::{Fov, Scene, resolution};
 use crate::settings::{Convention, Settings};
 
 /// The picture that a page asks for.
@@ -20,6 +20,8 @@ pub struct ViewState {
     pub precision: precision::Request,
     /// Size of the picture in place of the scene's.
     pub res: Option<(u32, u32)>,
+    /// The field of view in place of the scene's window.
+    pub fov: Option<Fov>,
 }
 
 impl ViewState {

@@ -6,7 +6,9 @@ use glam::DVec3;
 
 use super::{Frame, Placement};
 use crate::report::csv::{Cell, cells};
-use crate::scene::{Collector, Detail, Line, MAX_RESOLUTION, Span, first_line, parse_number, show_diagnostics, shown};
+use crate::scene::{
+    Collector, Detail, Fov, Line, MAX_RESOLUTION, Span, first_line, parse_number, show_diagnostics, shown,
+};
 use crate::words::{count, slips};
 
 /// A column of the file; its value is its place here.
@@ -14,16 +16,17 @@ use crate::words::{count, slips};
 struct Column(usize);
 
 /// The names of all columns.
-const NAMES: [&str; 17] = [
+const NAMES: [&str; 18] = [
     "eye_x", "eye_y", "eye_z", "at_x", "at_y", "at_z", "up_x", "up_y", "up_z", "width", "height", "near", "left",
-    "right", "bottom", "top", "scene",
+    "right", "bottom", "top", "fov", "scene",
 ];
 const EYE: usize = 0;
 const AT: usize = 3;
 const UP: usize = 6;
 const SIZE: usize = 9;
 const WINDOW: usize = 11;
-const SCENE: usize = 16;
+const FOV: usize = 16;
+const SCENE: usize = 17;
 
 /// The frames of `text`. An empty cell, like a column that is not there, means what `given` has, or the scene. Paths of scenes are
 /// relative to `folder`; `name` and `color` are for the report.
@@ -140,13 +143,18 @@ impl Reader<'_> {
         };
         let size = [0, 1].map(|side| numbers[SIZE + side].map(|number| number as u32));
         let window = std::array::from_fn(|edge| numbers[WINDOW + edge]);
+        let fov = numbers[FOV].and_then(Fov::from_degrees).or(self.given.fov);
+        if let (Some((span, _)), Some(edge)) = (row[FOV], (WINDOW + 1..FOV).find(|&edge| row[edge].is_some())) {
+            let message = format!("both fov and {} say how large the window is", NAMES[edge]);
+            self.error(line, span, Detail::new(message, "expected one of them"));
+        }
         let scene = row[SCENE].map(|(_, cell)| self.folder.join(path(&cell.text)));
         if self.collector.error_count() > errors {
             return None;
         }
-        let placement = Placement { eye: vector(EYE, self.given.eye), look_at, up: vector(UP, self.given.up) };
+        let placement = Placement { eye: vector(EYE, self.given.eye), look_at, up: vector(UP, self.given.up), fov };
         match placement.view() {
-            Ok(view) => Some(Frame { view, size, window, scene }),
+            Ok(view) => Some(Frame { view, size, fov, window, scene }),
             Err(why) => {
                 // What the row itself says of the camera, or all of it.
                 let told: Vec<Span> = row[..SIZE].iter().flatten().map(|(span, _)| *span).collect();
@@ -166,6 +174,7 @@ impl Reader<'_> {
         let is_right = |x: f64| match column {
             _ if is_side => x.fract() == 0.0 && (1.0..=f64::from(MAX_RESOLUTION)).contains(&x),
             WINDOW => x > 0.0,
+            FOV => Fov::from_degrees(x).is_some(),
             _ => true,
         };
         let number = parse_number(&cell.text).ok();
@@ -176,6 +185,7 @@ impl Reader<'_> {
         let expected = match column {
             _ if is_side => format!("expected a whole number from 1 to {MAX_RESOLUTION}"),
             WINDOW => "expected a number above 0".into(),
+            FOV => "expected an angle above 0 and below 180 degrees".into(),
             _ => "expected a number".into(),
         };
         self.error(line, span, Detail::new(format!("{name} {what}: '{}'", shown(&cell.text)), expected));

@@ -38,7 +38,7 @@ pub fn turntable(count: u32, scene: &Scene, start: &Placement) -> Result<Vec<Pla
     let placement = |index: u32| {
         let turn = DQuat::from_axis_angle(axis, TAU * f64::from(index) / f64::from(count));
         let turned = |point: DVec3| center + turn * (point - center);
-        Placement { eye: turned(start.eye), look_at: Some(turned(look_at)), up: start.up }
+        Placement { eye: turned(start.eye), look_at: Some(turned(look_at)), ..*start }
     };
     let turned = (1..count).map(placement);
     Ok(std::iter::once(*start).chain(turned).collect())

@@ -13,7 +13,7 @@ use trueray::effects::{EffectSet, Effects, Request};
 use trueray::engine::Backend;
 use trueray::film::Picture;
 use trueray::precision::Tier;
-use trueray::scene::Scene;
+use trueray::scene::{Fov, Scene, Window};
 use trueray::settings::{SampleOffset, Settings};
 use trueray::view::{View, ViewError};
 
@@ -95,6 +95,78 @@ fn axes_are_orthonormal() {
         assert!((a.dot(b) - product).abs() < 1e-15);
     }
     assert!(x.cross(y).dot(z) > 0.0);
+}
+
+#[test]
+fn a_field_of_view_is_a_symmetric_window() {
+    let fov = |degrees| Fov::from_degrees(degrees).unwrap();
+    assert_eq!(fov(90.0).window(1.0, (40, 40)), Window::default());
+    let half = Window { near: 2.0, left: -4.0, right: 4.0, bottom: -2.0, top: 2.0 };
+    assert_eq!(fov(90.0).window(2.0, (64, 32)), half);
+    for degrees in [1e-9, 0.5, 30.0, 60.0, 89.999, 90.001, 120.0, 179.9] {
+        let top = fov(degrees).window(1.0, (3, 4)).top;
+        let tangent = (degrees.to_radians() / 2.0).tan();
+        assert!((top - tangent).abs() <= 1e-12 * tangent, "{degrees}: {top}");
+        // The angle between the rays through both edges.
+        assert!((2.0 * top.atan().to_degrees() - degrees).abs() <= 1e-12 * degrees, "{degrees}");
+    }
+    for degrees in [0.0, -0.0, -30.0, 180.0, 360.0, f64::NAN, f64::INFINITY] {
+        assert_eq!(Fov::from_degrees(degrees), None, "{degrees}");
+    }
+    // NEAR and the angle are extreme: the scene keeps its window.
+    let mut scene = world();
+    scene.window.near = 1e308;
+    let own = scene.window;
+    assert!(scene.set_fov(fov(179.0)).is_err());
+    scene.window.near = 1e-200;
+    assert!(scene.set_fov(fov(1e-200)).is_err());
+    assert_eq!(scene.window, Window { near: 1e-200, ..own });
+}
+
+/// The option, wherever the camera is taken, gives what a scene file with that window gives.
+#[test]
+fn fov_shows_what_a_file_with_its_window_shows() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name).display().to_string();
+    let mut scene = world();
+    std::fs::write(file("scene.txt"), scene.to_string()).unwrap();
+    (scene.width, scene.height) = (32, 48);
+    scene.window = Window { near: 1.0, left: -2.0 / 3.0, right: 2.0 / 3.0, bottom: -1.0, top: 1.0 };
+    std::fs::write(file("window.txt"), scene.to_string()).unwrap();
+    let run = |args: &str, scene: &str, output: &str| {
+        let picture = args.starts_with("render").then(|| ["-o".into(), file(output)]);
+        let words =
+            args.split_whitespace().map(str::to_owned).chain([file(scene)]).chain(picture.into_iter().flatten());
+        trueray(words)
+    };
+    let expected = run("render -q --device cpu", "window.txt", "window.png");
+    assert_eq!(expected.status.code(), Some(0));
+    let output = run("render --device cpu --fov 90 --res 32x48", "scene.txt", "fov.png");
+    let said = String::from_utf8_lossy(&output.stderr);
+    // Its pixels are square: no picture is distorted.
+    assert!(output.status.success() && !said.contains("warning"), "{said}");
+    assert_eq!(std::fs::read(file("fov.png")).unwrap(), std::fs::read(file("window.png")).unwrap());
+    let compared = format!("compare --fov 90 --res 32x48 --device cpu {} --scene", file("window.png"));
+    assert_eq!(run(&compared, "scene.txt", "").status.code(), Some(0));
+    let pixel = |args: &str, scene: &str| {
+        let output = trueray(format!("pixel --json --device cpu {args} {} 20 30", file(scene)).split_whitespace());
+        let pixel: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        pixel["reference"].clone()
+    };
+    assert_eq!(pixel("--fov 90 --res 32x48", "scene.txt"), pixel("", "window.txt"));
+    for (degrees, code, message) in [
+        ("0", 2, "expected an angle above 0 and below 180 degrees"),
+        ("-20", 2, "expected an angle"),
+        ("180", 2, "expected an angle"),
+        ("nan", 2, "expected an angle"),
+        ("1e-323", 2, "--fov: right of the window is 0: expected another number"),
+    ] {
+        let output = run(&format!("render --device cpu --fov {degrees}"), "scene.txt", "none.png");
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.code() == Some(code) && said.contains(message), "{degrees}: {said}");
+    }
+    let bench = trueray(["bench", "--fov", "40", "--list"]);
+    assert_eq!(bench.status.code(), Some(2));
 }
 
 /// Renderers have the eye at the origin and usual units, and a copy of the scene only where one of them takes it.

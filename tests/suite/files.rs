@@ -231,10 +231,10 @@ fn a_refused_name_is_that_scenes_own_trouble() {
 
 #[test]
 fn an_unknown_ending_is_an_error_unless_a_format_is_asked_for() {
-    for name in ["a.bmp", "a.jpg", "a.exr", "a.tif"] {
+    for name in ["a.bmp", "a.jpg", "a.hdr", "a.tif"] {
         let place = Folder::with_scene(&format!("OUTPUT {name}"));
-        place.run("scene.txt", 2, ".ppm or .png");
-        place.run(&format!("render --device cpu scene.txt -o x-{name}"), 2, "--format p6, p3 or png");
+        place.run("scene.txt", 2, ".ppm, .png, .pfm or .exr");
+        place.run(&format!("render --device cpu scene.txt -o x-{name}"), 2, "--format p6, p3, png, pfm or exr");
         place.run(&format!("compare scene.txt scene.txt --heatmap {name}"), 2, ".ppm or .png");
         assert_eq!(place.files(), ["scene.txt"]);
         place.run("render --device cpu --format png scene.txt", 0, "");

@@ -34,6 +34,7 @@ mod house;
 mod import;
 mod keys;
 mod library;
+mod linear;
 mod lists;
 mod magnitudes;
 mod masked;

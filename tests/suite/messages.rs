@@ -143,7 +143,7 @@ fn check_doubts_a_name_that_render_refuses() {
     assert_exit(&place.run("check scene.txt"), 0, &format!("warning: without -o there is no picture: {why}\n"));
     assert_exit(&place.run("render --device cpu scene.txt"), 6, why);
     std::fs::write(place.path().join("scene.txt"), SCENE.replace("out.ppm", "out.jpg")).unwrap();
-    let why = "warning: without -o there is no picture: out.jpg: pictures are written as .ppm or .png";
+    let why = "warning: without -o there is no picture: out.jpg: pictures are written as .ppm, .png, .pfm or .exr";
     assert_exit(&place.run("check scene.txt"), 0, why);
     // File systems take 255 bytes, however many letters these are.
     for (letters, fits) in [(250, true), (252, false)] {

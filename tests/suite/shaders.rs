@@ -71,6 +71,7 @@ fn specialisation(variant: &Variant, effects: EffectSet, flags: usize) -> Specia
         samples,
         slots,
         certified,
+        linear: variant.samples && count_rays,
         count_rays,
         workgroup: 64,
         dispatch_tiles: 8,

@@ -43,6 +43,7 @@ fn start() -> ViewState {
         effects: effects::Request::Auto,
         precision: precision::Request::default(),
         res: None,
+        fov: None,
     }
 }
 
@@ -265,7 +266,8 @@ fn the_picture_at_rest_is_that_of_render() {
 
 #[test]
 fn the_command_line_of_a_view_renders_it() {
-    let work = Work::new(SCENE, false);
+    let fov = trueray::Fov::from_degrees(37.5);
+    let work = work_with(ViewState { fov, ..start() }, || Ok(None));
     let mut page = work.page();
     page.send(r#"{"do":"orbit","right":-0.7,"up":0.3}"#);
     page.send(r#"{"do":"fly","right":0.013,"up":0.3,"forward":-0.21}"#);

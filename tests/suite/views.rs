@@ -17,7 +17,7 @@ use trueray::settings::Settings;
 use trueray::verify::Verify;
 use trueray::view::View;
 use trueray::views::{Frame, NoCenter, Placement, table, turntable};
-use trueray::{Renderer, Window};
+use trueray::{Fov, Renderer, Window};
 
 use crate::support::{gpu, root, scene, scene_of};
 
@@ -27,7 +27,7 @@ const SCENE: &str = "SPHERE a 0 0 -6 2 2 2 0.9 0.2 0.1 0.3 0.7 0.3 0.4 20\nSPHER
                      AMBIENT 0.3 0.3 0.3\nBACK 0.1 0.1 0.2\n";
 const HEAD: &str = "NEAR 1\nLEFT -1\nRIGHT 1\nBOTTOM -1\nTOP 1\n";
 /// Where the file's camera is.
-const START: Placement = Placement { eye: DVec3::ZERO, look_at: None, up: DVec3::Y };
+const START: Placement = Placement { eye: DVec3::ZERO, look_at: None, up: DVec3::Y, fov: None };
 
 /// A folder with the scene in `scene.txt`, where the program runs.
 struct Folder(TempDir);
@@ -119,18 +119,20 @@ fn rows_are_what_options_and_scene_files_say() {
         .write("folder/other.txt", &format!("{HEAD}RES 10 12\nSPHERE s 0 0 -4 1 1 1 1 1 0 1 0 0 0 1\nAMBIENT 1 1 1\n"));
     place.write(
         "folder/views.csv",
-        "eye_x,eye_y,eye_z,at_x,at_y,at_z,up_x,up_y,up_z,width,height,near,left,right,bottom,top,scene\n\
-         ,,,,,,,,,,,,,,,,\n\
-         0.5,0.2,1,0,0,-6,1,1,0,,,,,,,,\n\
-         ,,,,,,,,,12,,0.5,,2,,,\n\
-         1,,,,,,,,,,,,,,,,other.txt\n\
-         -0.5,,,,,,,,,,,,,,,,\n",
+        "eye_x,eye_y,eye_z,at_x,at_y,at_z,up_x,up_y,up_z,width,height,near,left,right,bottom,top,fov,scene\n\
+         ,,,,,,,,,,,,,,,,,\n\
+         0.5,0.2,1,0,0,-6,1,1,0,,,,,,,,,\n\
+         ,,,,,,,,,12,,0.5,,2,,,,\n\
+         1,,,,,,,,,,,,,,,,,other.txt\n\
+         -0.5,,,,,,,,,,,,,,,,,\n\
+         ,,,,,,,,,12,,0.5,,,,,60,\n",
     );
     place.render("-q --views folder/views.csv scene.txt -o f%d.png", 0, "");
     let own = Scene::from_text("own", &fs::read(place.path("scene.txt")).unwrap()).unwrap();
     let other = Scene::from_text("other", &fs::read(place.path("folder/other.txt")).unwrap()).unwrap();
     let mut sized = Scene { width: 12, ..own.clone() };
     sized.window = Window { near: 0.5, right: 2.0, ..own.window };
+    let seen = Scene { window: Fov::from_degrees(60.0).unwrap().window(0.5, (12, 16)), ..sized.clone() };
     let turned = View::new(DVec3::new(0.5, 0.2, 1.0), Some(DVec3::new(0.0, 0.0, -6.0)), DVec3::new(1.0, 1.0, 0.0));
     for (number, scene, view) in [
         (1, &own, View::FILE),
@@ -138,15 +140,16 @@ fn rows_are_what_options_and_scene_files_say() {
         (3, &sized, View::FILE),
         (4, &other, view([1.0, 0.0, 0.0], None)),
         (5, &own, view([-0.5, 0.0, 0.0], None)),
+        (6, &seen, View::FILE),
     ] {
         let expected = Renderer::reference().render(scene, &Settings { view, ..Settings::default() }).unwrap();
         assert!(place.picture(&format!("f{number}.png")) == expected, "frame {number}");
     }
     // What a row leaves empty is as in the options.
-    place.write("two.csv", "eye_x,eye_y\n,\n2,\n");
-    place.render("-q --views two.csv scene.txt --eye 1,1,1 --look-at 0,0,-6 --res 6x6 -o g%d.ppm", 0, "");
+    place.write("two.csv", "eye_x,eye_y,fov\n,,20\n2,,\n");
+    place.render("-q --views two.csv scene.txt --eye 1,1,1 --look-at 0,0,-6 --res 6x6 --fov 50 -o g%d.ppm", 0, "");
     let settings = Settings { view: view([2.0, 1.0, 1.0], Some([0.0, 0.0, -6.0])), ..Settings::default() };
-    let small = Scene { width: 6, height: 6, ..own };
+    let small = Scene { width: 6, height: 6, window: Fov::from_degrees(50.0).unwrap().window(1.0, (6, 6)), ..own };
     assert!(place.picture("g2.ppm") == Renderer::reference().render(&small, &settings).unwrap());
 }
 
@@ -182,7 +185,8 @@ fn a_turntable_goes_around_once() {
         assert!((placement.eye - center - turned(-center)).length() < 1e-12, "{placement:?}");
         assert!((behind - turned(back)).length() < 1e-12 && up == DVec3::Y && right.y == 0.0, "{placement:?}");
     }
-    let start = Placement { eye: DVec3::new(0.0, 2.0, 0.0), look_at: Some(DVec3::new(0.0, 0.0, -6.0)), up: DVec3::Z };
+    let (eye, look_at) = (DVec3::new(0.0, 2.0, 0.0), Some(DVec3::new(0.0, 0.0, -6.0)));
+    let start = Placement { eye, look_at, up: DVec3::Z, fov: None };
     let all = turntable(7, &scene, &start).unwrap();
     assert!(
         all.len() == 7
@@ -233,7 +237,7 @@ fn what_makes_no_sense_is_refused_before_anything_is_rendered() {
         ("--turntable 2 --aov t scene.txt -o f%d.png", 2, "--aov"),
         ("--turntable 2 --certificate c.json scene.txt -o f%d.png", 2, "--certificate"),
         ("--turntable 2 --sparse 0.5 scene.txt -o f%d.png", 2, "--sparse"),
-        ("--turntable 2 scene.txt -o f%d.jpg", 2, "written as .ppm or .png"),
+        ("--turntable 2 scene.txt -o f%d.jpg", 2, "written as .ppm, .png, .pfm or .exr"),
         ("--turntable 2 scene.txt -o none/f%d.png", 6, "there is no folder none"),
         ("--views none.csv scene.txt -o f%d.png", 3, "cannot read the views none.csv"),
         ("--views views.ppm scene.txt -o views.ppm%%%d --format p6", 0, ""),
@@ -292,6 +296,8 @@ fn errors_of_a_table_name_line_column_and_token() {
         ("width\n0\n", "2:1", "width is out of range: '0'"),
         ("height\n1.5\n", "2:1", "height is out of range: '1.5'"),
         ("near\n-1\n", "2:1", "near is out of range: '-1'"),
+        ("fov\n180\n", "2:1", "fov is out of range: '180'"),
+        ("top,fov\n1,40\n", "2:3", "both fov and top say how large the window is"),
         ("eye_x,at_x,at_y\n1,2,3\n", "2:3", "at_z is missing"),
         ("eye_x,eye_y,eye_z,at_x,at_y,at_z\n 1,2,3,1,2,3\n", "2:2", "eye and look-at are the same point"),
         ("at_x,at_y,at_z,up_x,up_y,up_z\n0,5,0,0,1,0\n", "2:1", "up is parallel to the direction of view"),

@@ -16,17 +16,18 @@ use self::frame_list::FrameList;
 use self::pattern::Pattern;
 use self::prepare::{Opened, Prepared, Preparer, Source};
 use self::write::{Step, Writer};
-use super::{Args, Noted, folder, format_of, write_stats};
+use super::{Args, Noted, coding_of, folder, write_stats};
 use crate::cli::color;
 use crate::cli::failure::{Failure, SCENE, USAGE};
 use crate::cli::files::check_place;
 use crate::cli::guard::Guard;
 use crate::cli::input::Loaded;
+use crate::cli::linear::Coding;
 use crate::cli::named::check_named;
 use crate::cli::output::err;
 use crate::cli::timeline::Timeline;
 use crate::engine::render_bands;
-use crate::film::{Format, Target};
+use crate::film::Target;
 use crate::gpu::{self, USUAL_KERNELS};
 use crate::threads::{at_once, in_stages};
 use crate::view::ViewError;
@@ -38,7 +39,7 @@ use crate::words::count;
 #[command(next_help_heading = "Camera")]
 pub(super) struct Options {
     /// Render a frame for each row of a CSV file, whose header has some of the names
-    /// `eye_x,eye_y,eye_z,at_x,at_y,at_z,up_x,up_y,up_z,width,height,near,left,right,bottom,top,scene`; an empty cell is as in the
+    /// `eye_x,eye_y,eye_z,at_x,at_y,at_z,up_x,up_y,up_z,width,height,near,left,right,bottom,top,fov,scene`; an empty cell is as in the
     /// options or the scene
     #[arg(long, value_name = "FILE", group = "many")]
     views: Option<PathBuf>,
@@ -56,7 +57,7 @@ struct Job {
     number: u32,
     frame: Frame,
     path: PathBuf,
-    format: Format,
+    coding: Coding,
 }
 
 impl Options {
@@ -81,7 +82,8 @@ impl Options {
         let refused = |why: String| Failure::new(USAGE, why);
         let placements = turntable(self.turntable.unwrap_or(1), &loaded.scene, &placement);
         let placements = placements.map_err(|error| refused(error.to_string()))?;
-        let views = placements.iter().map(|placement| Ok(Frame::seen_by(placement.view()?)));
+        let views =
+            placements.iter().map(|placement| Ok(Frame { fov: placement.fov, ..Frame::seen_by(placement.view()?) }));
         views.collect::<Result<_, ViewError>>().map_err(|error| refused(error.to_string()))
     }
 
@@ -177,23 +179,23 @@ fn jobs(args: &Args, loaded: &Loaded, frames: Vec<(u32, Frame)>, guard: &mut Gua
         }
         check_place(&path)?;
         guard.output(&format!("frame {number}"), &path)?;
-        let format = format_of(args, &Target::File(path.clone()))?;
-        Ok(Job { number, frame, path, format })
+        let coding = coding_of(args, &Target::File(path.clone()))?;
+        Ok(Job { number, frame, path, coding })
     };
     frames.into_iter().map(job).collect()
 }
 
 /// Renders a frame and hands on what becomes of it.
 fn render(args: &Args, prepared: Result<Option<Prepared>, Failure>, hand_on: &mut dyn FnMut(Step)) {
-    let Prepared { target, format, note, mut engine, mut stats, start } = match prepared {
+    let Prepared { target, coding, note, levels, mut engine, mut stats, start } = match prepared {
         Ok(Some(prepared)) => prepared,
         Ok(None) => return hand_on(Step::There),
         Err(failure) => return hand_on(Step::Failed(failure)),
     };
     let number = stats.frame.unwrap_or_default();
-    hand_on(Step::Begin { number, target, format, note, size: engine.size() });
+    hand_on(Step::Begin { number, target, coding, note, levels, size: engine.size() });
     let rendered = render_bands(&mut engine, |band| {
-        hand_on(Step::Rows(band.rgb.to_vec()));
+        hand_on(Step::Rows { rgb: band.rgb.to_vec(), linear: band.linear.to_vec() });
         Ok::<_, gpu::Error>(())
     });
     let not_finite = match rendered {

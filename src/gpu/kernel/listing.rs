@@ -34,7 +34,7 @@ impl Specialisation {
             names.extend([BEGIN_BOUNCE, WALK_PATHS]);
             names.extend(matches!(self.schedule, Schedule::InTurn(_)).then_some(SHADE_PATHS));
         }
-        names.extend((self.samples > 1).then_some(RESOLVE));
+        names.extend(self.keeps_colors().then_some(RESOLVE));
         names
     }
 

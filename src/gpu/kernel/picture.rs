@@ -26,7 +26,7 @@ pub(crate) struct Pipelines {
     pub(crate) trace: Pipeline,
     /// Where paths are kept.
     pub(crate) bounce: Option<Bounce>,
-    /// From samples to pixels, where there are several a pixel.
+    /// From samples to pixels, where their colours are kept.
     pub(crate) resolve: Option<Pipeline>,
 }
 
@@ -51,10 +51,7 @@ pub(crate) fn compile(
         Pipeline::new(compiler, &module, entry_point, &specialisation.constants_of(entry_point))
     };
     let between = || other(BEGIN_BOUNCE);
-    let resolve = || match specialisation.samples {
-        1 => Ok(None),
-        _ => other(RESOLVE).map(Some),
-    };
+    let resolve = || if specialisation.keeps_colors() { other(RESOLVE).map(Some) } else { Ok(None) };
     // A driver compiles a kernel on the thread that asks for it: side by side. The largest one goes here, since allocating is
     // cheapest on the main thread.
     let trace = || match specialisation.slots {

@@ -41,6 +41,8 @@ pub struct Specialisation {
     pub slots: Slots,
     /// Whether pixels say where rounding could decide what they show.
     pub certified: bool,
+    /// Whether each pixel also says its colour before that is quantised.
+    pub linear: bool,
     /// Whether each pixel also says how many rays it took.
     pub count_rays: bool,
     /// Invocations of a workgroup of the kernels that are not over tiles.
@@ -68,6 +70,7 @@ impl Specialisation {
             samples: settings.samples_per_side,
             slots: Slots::Tiles,
             certified: false,
+            linear: false,
             count_rays: false,
             workgroup: tuning.workgroup,
             dispatch_tiles: dispatch_tiles(UNIFORM),
@@ -102,7 +105,7 @@ impl Specialisation {
             kernel,
             storage,
             secondary,
-            samples: self.samples > 1,
+            samples: self.keeps_colors(),
             refraction,
             slots,
             schedule,
@@ -137,6 +140,7 @@ impl Specialisation {
             ("COUNT_RAYS", f64::from(self.count_rays)),
             ("TANGENTS", f64::from(self.kernel.tells_tangents())),
             ("CERTIFIED", f64::from(self.certified)),
+            ("LINEAR", f64::from(self.linear)),
             ("GROUP", f64::from(self.workgroup)),
         ];
         if self.keeps_paths() {
@@ -163,7 +167,7 @@ impl Specialisation {
         let mut constants = self.constants();
         match entry_point {
             BEGIN_BOUNCE => constants.retain(|(name, _)| ["GROUP", "PATHS"].contains(name)),
-            RESOLVE => constants.retain(|(name, _)| *name == "SAMPLES"),
+            RESOLVE => constants.retain(|(name, _)| ["SAMPLES", "LINEAR"].contains(name)),
             _ => {}
         }
         constants
@@ -177,6 +181,11 @@ impl Specialisation {
     /// Bytes of the colour of a sample.
     pub(crate) fn color_size(&self) -> u64 {
         if self.kernel.is_double() { 32 } else { 16 }
+    }
+
+    /// Whether the colours of samples are kept, for another kernel to make pixels of them.
+    pub(crate) fn keeps_colors(&self) -> bool {
+        self.samples > 1 || self.linear
     }
 
     /// Whether paths are kept from bounce to bounce.

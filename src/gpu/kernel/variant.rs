@@ -117,7 +117,7 @@ pub struct Variant {
     pub storage: Storage,
     /// Where the spheres are that secondary rays look for.
     pub secondary: Secondary,
-    /// Whether a pixel has several samples.
+    /// Whether the colours of samples are kept, for another kernel to make pixels of them.
     pub samples: bool,
     /// Where something refracts, how many rays wait at the most.
     pub refraction: Option<NonZeroU32>,

@@ -24,7 +24,7 @@ impl GpuRenderer<'_, Pixels> {
     }
 
     fn list(&mut self, pixels: &[[u32; 2]], colors: &mut [[u8; 3]]) -> Result<Rendered, Error> {
-        colors.fill(self.background);
+        colors.fill(self.background.0);
         let covered: Vec<usize> = (0..pixels.len()).filter(|&index| self.cover.has(pixels[index])).collect();
         let list: Vec<[u32; 2]> = covered.iter().map(|&index| pixels[index]).collect();
         // Buffers for this list and no more: the device fills them with zeros first.

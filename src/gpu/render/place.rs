@@ -1,5 +1,6 @@
 //! Pixels from the order of tiles to their places in rows, and what they say of themselves.
 
+use glam::DVec3;
 use rayon::prelude::*;
 
 use super::rendered::Rendered;
@@ -8,6 +9,7 @@ use crate::area::Area;
 use crate::gpu::device::error::Error;
 use crate::gpu::device::open::Device;
 use crate::gpu::shared::{STATUS_CUT, STATUS_FLAGS, STATUS_NOT_FINITE, STATUS_UNSURE};
+use crate::linear::Linear;
 use crate::tiles::TILE;
 
 /// How many pixels say what of themselves.
@@ -64,6 +66,28 @@ impl Statuses {
             0 => Ok(self.rendered),
             missing => {
                 Err(Error::Wrong(format!("{} has left out {missing} pixels of a dispatch without a word", device.info)))
+            }
+        }
+    }
+}
+
+/// Copies colours of a dispatch in tile order to their places in `linear`, the rows of `area`. Each is four numbers, `f64` where they
+/// are double: red, green, blue and coverage.
+pub(super) fn place_means(words: &[u32], is_double: bool, tiles: &[[u32; 2]], area: Area, linear: &mut [Linear]) {
+    let number = |words: &[u32]| match *words {
+        [low, high] => f64::from_bits(u64::from(high) << 32 | u64::from(low)),
+        [single] => f64::from(f32::from_bits(single)),
+        _ => f64::NAN,
+    };
+    let per_number = if is_double { 2 } else { 1 };
+    let mut means = words.chunks_exact(4 * per_number);
+    for &[left, top] in tiles {
+        for (place, mean) in (0..TILE_PIXELS as u32).zip(&mut means) {
+            let [x, y] = [left + place % TILE, top + place / TILE];
+            if area.has([x, y]) {
+                let [r, g, b, coverage] = std::array::from_fn(|at| number(&mean[at * per_number..][..per_number]));
+                let at = (y - area.top) as usize * area.width as usize + (x - area.left) as usize;
+                linear[at] = Linear { color: DVec3::new(r, g, b), coverage };
             }
         }
     }

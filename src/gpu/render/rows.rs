@@ -7,13 +7,14 @@ use rayon::prelude::*;
 use super::GpuRenderer;
 use super::order::{curve, dealt};
 use super::output::Rows;
-use super::place::{Statuses, place_tiles};
+use super::place::{Statuses, place_means, place_tiles};
 use super::rendered::Rendered;
 use super::tiles::TILE_PIXELS;
 use super::work::Work;
 use crate::area::Area;
 use crate::gpu::device::error::Error;
-use crate::misuse::check_rows;
+use crate::linear::Linear;
+use crate::misuse::{check_colors, check_rows};
 use crate::stop;
 use crate::tiles::TILE;
 
@@ -26,26 +27,41 @@ impl GpuRenderer<'_, Rows> {
     pub fn rows(&mut self, first: u32, rgb: &mut [u8]) -> Result<Rendered, Error> {
         let area = self.area();
         let count = check_rows(area.size(), first, rgb.len())?;
-        self.gpu.device.guarded(|| self.bands(area.top + first, count, rgb))
+        self.gpu.device.guarded(|| self.bands(area.top + first, count, rgb, &mut []))
     }
 
-    fn bands(&mut self, first: u32, count: u32, rgb: &mut [u8]) -> Result<Rendered, Error> {
+    /// Likewise, with the colours of the same pixels before they are quantised.
+    ///
+    /// # Errors
+    ///
+    /// Also [`Error::Misuse`] where there is not one colour for each pixel, or the renderer was not prepared for it.
+    pub fn linear_rows(&mut self, first: u32, rgb: &mut [u8], linear: &mut [Linear]) -> Result<Rendered, Error> {
+        let area = self.area();
+        let count = check_rows(area.size(), first, rgb.len())?;
+        check_colors(rgb.len() / 3, if self.is_linear() { linear.len() } else { 0 })?;
+        self.gpu.device.guarded(|| self.bands(area.top + first, count, rgb, linear))
+    }
+
+    /// `linear` is empty where it is not wanted.
+    fn bands(&mut self, first: u32, count: u32, rgb: &mut [u8], linear: &mut [Linear]) -> Result<Rendered, Error> {
         let row_bytes = self.area().width as usize * 3;
         let most = self.tile_words.most_rows();
         let mut rendered = Rendered::default();
+        let mut linear = linear.chunks_mut(row_bytes / 3 * most as usize);
         for (start, rgb) in (first..first + count).step_by(most as usize).zip(rgb.chunks_mut(row_bytes * most as usize))
         {
-            rendered.add(self.band(start, rgb)?);
+            rendered.add(self.band(start, rgb, linear.next().unwrap_or_default())?);
         }
         self.pixels += u64::from(self.area().width) * u64::from(count);
         Ok(rendered)
     }
 
     /// Renders rows whose tiles fit into words together.
-    fn band(&mut self, first: u32, rgb: &mut [u8]) -> Result<Rendered, Error> {
+    fn band(&mut self, first: u32, rgb: &mut [u8], linear: &mut [Linear]) -> Result<Rendered, Error> {
         let row_bytes = self.area().width as usize * 3;
         let count = (rgb.len() / row_bytes) as u32;
-        let background = self.background;
+        let (background, linear_background) = self.background;
+        linear.fill(linear_background);
         rgb.par_chunks_mut(row_bytes).for_each(|row| row.as_chunks_mut::<3>().0.fill(background));
 
         let area = Area { top: first, height: count, ..self.area() };
@@ -70,6 +86,9 @@ impl GpuRenderer<'_, Rows> {
                 continue;
             }
             rendered.add(statuses.checked(&self.gpu.device)?);
+            if !linear.is_empty() {
+                self.read_means(&work, now, area, linear)?;
+            }
             self.add_rays(&work, now.len() * TILE_PIXELS, |place| {
                 let ([left, top], place) = (now[place / TILE_PIXELS], (place % TILE_PIXELS) as u32);
                 // A tile may reach beyond the picture, or into pixels that are not asked for.
@@ -80,6 +99,16 @@ impl GpuRenderer<'_, Rows> {
             rest = later;
         }
         Ok(rendered)
+    }
+
+    /// Puts the colours of the pixels of `tiles` into `linear`, the rows of `area`.
+    fn read_means(&mut self, work: &Work, tiles: &[[u32; 2]], area: Area, linear: &mut [Linear]) -> Result<(), Error> {
+        let start = Instant::now();
+        let is_double = self.inputs.specialisation.kernel.is_double();
+        let words = tiles.len() * TILE_PIXELS * if is_double { 8 } else { 4 };
+        work.means.read(&self.gpu.device, words, |words| place_means(words, is_double, tiles, area, linear))?;
+        self.times.read_back += start.elapsed();
+        Ok(())
     }
 
     /// Puts the pixels of `tiles` into `rgb`, the rows of `area`.

@@ -37,6 +37,8 @@ pub(super) struct Work {
     pub(super) workgroups: wgpu::Buffer,
     pub(super) pixels: Readable,
     pub(super) ray_counts: Readable,
+    /// Colours and coverage of pixels, where they are wanted: four numbers each.
+    pub(super) means: Readable,
     /// Tiles that the buffers hold.
     pub(super) capacity: u32,
 }
@@ -59,6 +61,8 @@ impl Work {
         let slots = pixel_count * u64::from(specialisation.samples * specialisation.samples);
         let pixels = Readable::new(device, pixel_count);
         let ray_counts = Readable::new(device, if specialisation.count_rays { slots * RAY_COUNT_SIZE / 4 } else { 2 });
+        let number = specialisation.color_size() / 4;
+        let means = Readable::new(device, if specialisation.linear { pixel_count * number } else { number });
         let paths = specialisation.path_size() * if specialisation.keeps_paths() { slots } else { 1 };
         let paths = [0, 1].map(|_| empty_table(device, tables, paths, 4));
         let in_turn = matches!(specialisation.schedule, Schedule::InTurn(_));
@@ -75,6 +79,7 @@ impl Work {
         bind("tiles", &tiles);
         bind("list", &tiles);
         bind("ray_counts", &ray_counts.buffer);
+        bind("means", &means.buffer);
         bind("path_queue", &path_queue);
         bind("pixels", &pixels.buffer);
         bind("workgroups", &workgroups);
@@ -115,6 +120,7 @@ impl Work {
             workgroups,
             pixels,
             ray_counts,
+            means,
             capacity,
         }
     }

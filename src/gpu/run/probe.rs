@@ -295,6 +295,7 @@ impl<'a> Prober<'a> {
             sphere_count: 0,
             schedule: Schedule::InPlace,
             certified: false,
+            linear: false,
             count_rays: false,
             workgroup: 64,
             samples: 1,

@@ -3,7 +3,7 @@
 use crate::effects::Effects;
 use crate::engine::{Backend, Engine, Options, Output};
 use crate::gpu;
-use crate::scene::{Scene, Window};
+use crate::scene::{Fov, Scene, Window};
 use crate::settings::Settings;
 
 /// Pixels of a page's picture on each side at the most: browsers show no larger ones everywhere.
@@ -14,11 +14,11 @@ pub(super) fn coarse_engine<'g, O: Output>(
     backend: Backend<'g>,
     scene: &mut Scene,
     (settings, effects): (&Settings, &Effects),
-    size: (u32, u32),
+    (size, fov): Framing,
     step: u32,
     options: &Options,
 ) -> Result<(Engine<'g, O>, (u32, u32)), gpu::Error> {
-    with_size(scene, size, |scene| {
+    framed(scene, (size, fov), |scene| {
         let (width, height) = (size.0.div_ceil(step), size.1.div_ceil(step));
         // The window reaches as far as its pixels, which may be beyond the picture. Its own size may be beyond numbers.
         let end = |from: f64, to: f64, count: u32, whole: u32| {
@@ -35,9 +35,12 @@ pub(super) fn coarse_engine<'g, O: Output>(
     })
 }
 
-/// Lets `action` see the scene with this size of its picture, and change that and the window; however it ends, the scene has its
-/// own again. A scene may be too large to be copied for that.
-pub(super) fn with_size<T>(scene: &mut Scene, size: (u32, u32), action: impl FnOnce(&mut Scene) -> T) -> T {
+/// The size of a picture, and the field of view where it takes the place of the scene's window.
+pub(super) type Framing = ((u32, u32), Option<Fov>);
+
+/// Lets `action` see the scene so framed, and change its size and window; however it ends, the scene has its own again. A scene may be
+/// too large to be copied for that.
+pub(super) fn framed<T>(scene: &mut Scene, (size, fov): Framing, action: impl FnOnce(&mut Scene) -> T) -> T {
     struct Lent<'s>(&'s mut Scene, (u32, u32), Window);
     impl Drop for Lent<'_> {
         fn drop(&mut self) {
@@ -48,6 +51,8 @@ pub(super) fn with_size<T>(scene: &mut Scene, size: (u32, u32), action: impl FnO
     let (own, window) = ((scene.width, scene.height), scene.window);
     let lent = Lent(scene, own, window);
     (lent.0.width, lent.0.height) = size;
+    // Where there is no such window, nothing is rendered, and the page is told why: `start_job`.
+    _ = fov.map(|fov| lent.0.set_fov(fov));
     action(lent.0)
 }
 

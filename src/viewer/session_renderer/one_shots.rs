@@ -1,6 +1,6 @@
 //! What a page asks for besides a picture: a pixel, a file, a measurement.
 
-use super::coarse::{coarse_engine, with_size};
+use super::coarse::{coarse_engine, framed};
 use super::reduced::MANY_SPHERES;
 use super::{Context, FRAME_MS, SessionRenderer};
 use crate::cpu::{Inspector, MOST_RAYS, picked};
@@ -56,7 +56,7 @@ impl SessionRenderer<'_> {
             let start = (y as usize * width as usize + x as usize) * 3;
             [rgb[start], rgb[start + 1], rgb[start + 2]]
         });
-        let (hit, record) = with_size(context.scene, job.size, |scene| {
+        let (hit, record) = framed(context.scene, job.framing(), |scene| {
             let viewed = scene.viewed(&job.settings);
             let is_quick = scene.spheres.len() <= MANY_SPHERES;
             let inspector = is_quick.then(|| Inspector::new(&viewed, &job.effects));
@@ -85,7 +85,7 @@ impl SessionRenderer<'_> {
         let backend = Backend::of(self.gpu, &job.selection);
         let how = (&job.settings, &effects);
         let (mut engine, (width, height)): (Engine, _) =
-            coarse_engine(backend, context.scene, how, job.size, step, &Options::default())?;
+            coarse_engine(backend, context.scene, how, job.framing(), step, &Options::default())?;
         let mut rgb = vec![0; width as usize * height as usize * 3];
         engine.rows(0, &mut rgb)?;
         let times = engine.times();

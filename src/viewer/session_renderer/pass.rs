@@ -69,7 +69,7 @@ impl SessionRenderer<'_> {
         let start = Instant::now();
         let settings = Settings { samples_per_side, ..job.settings };
         let backend = Backend::of(self.gpu, &job.selection);
-        let (scene, how, whole) = (&mut *context.scene, (&settings, &job.effects), job.size);
+        let (scene, how, whole) = (&mut *context.scene, (&settings, &job.effects), job.framing());
         let (engine, size) = if let Some(map) = job.map.take() {
             let (engine, size) = coarse_engine(backend, scene, how, whole, step, &self.maps.options())?;
             (PassEngine::Sampled(engine, map), size)

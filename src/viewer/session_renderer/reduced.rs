@@ -4,13 +4,11 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use super::coarse::{coarse_engine, fitted, with_size};
-use super::{Context, FRAME_MS, SessionRenderer};
+use super::coarse::{Framing, coarse_engine, fitted, framed};
+use super::{Context, FRAME_MS, Plan, SessionRenderer};
 use crate::effects::Effects;
 use crate::engine::{Backend, Engine, Options, Pixels, ms};
-use crate::gpu::{self, Gpu};
-use crate::limits;
-use crate::precision::{Selection, Tier};
+use crate::gpu;
 use crate::scene::{Names, Scene};
 use crate::settings::Settings;
 use crate::viewer::canvas::Canvas;
@@ -44,21 +42,17 @@ impl<'g> SessionRenderer<'g> {
         let settings = Settings { samples_per_side: 1, ..view.settings() };
         let size = fitted(view.size(context.scene), context.pixels);
         let mut part = largest(context.scene, &settings, REDUCED_SPHERES);
-        let viewed = part.viewed(&settings);
-        let effects = Effects::requested(&viewed, &view.effects);
-        if effects.too_deep(&part).or_else(|| limits::problem(&viewed, &effects)).is_some() {
+        let Plan { effects, selection, problem } = Plan::of(&mut part, &settings, &view, self.gpu);
+        if problem.is_some() {
             // The whole scene says why.
             self.reduced.shown = Some((version, Instant::now()));
             return Ok(());
         }
-        let ladder = self.gpu.map_or(&Tier::ALL[..], Gpu::ladder);
-        let selection = Selection::of(&viewed, &effects, view.precision, ladder);
-        drop(viewed);
         let backend = Backend::of(self.gpu, &selection);
         if self.canvas.size() != size {
             self.canvas = Canvas::new(size);
         }
-        if self.render_reduced_sampled(backend, &mut part, &settings, &effects, size)? {
+        if self.render_reduced_sampled(backend, &mut part, (&settings, &effects), (size, view.fov))? {
             self.reduced.shown = Some((version, Instant::now()));
             self.send_state(context);
             return Ok(());
@@ -66,7 +60,7 @@ impl<'g> SessionRenderer<'g> {
         let costs = CostModel { prepare_ms: 0.0, sample_ms: self.reduced.sample_ms, measured: true };
         let step = costs.step(size, FRAME_MS).max(2);
         let (mut engine, (width, height)): (Engine, _) =
-            coarse_engine(backend, &mut part, (&settings, &effects), size, step, &Options::default())?;
+            coarse_engine(backend, &mut part, (&settings, &effects), (size, view.fov), step, &Options::default())?;
         let mut rgb = vec![0; width as usize * height as usize * 3];
         engine.rows(0, &mut rgb)?;
         self.reduced.sample_ms = engine.times().render_ms / (f64::from(width) * f64::from(height)).max(4096.0);
@@ -80,9 +74,8 @@ impl<'g> SessionRenderer<'g> {
         &mut self,
         backend: Backend<'g>,
         part: &mut Scene,
-        settings: &Settings,
-        effects: &Effects,
-        size: (u32, u32),
+        (settings, effects): (&Settings, &Effects),
+        (size, fov): Framing,
     ) -> Result<bool, gpu::Error> {
         let preview = self.session.preview();
         let Some(map) = self.maps.choose(backend, &preview, size, [FRAME_MS, self.costs.sample_ms])? else {
@@ -91,7 +84,7 @@ impl<'g> SessionRenderer<'g> {
         let start = Instant::now();
         let options = self.maps.options();
         let mut engine: Engine<Pixels> =
-            with_size(part, size, |part| Engine::with(backend, part.viewed(settings), effects, &options))?;
+            framed(part, (size, fov), |part| Engine::with(backend, part.viewed(settings), effects, &options))?;
         let samples = map.samples.pixels();
         let mut colors = vec![[0; 3]; samples.len()];
         engine.pixels(samples, &mut colors)?;

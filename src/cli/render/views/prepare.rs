@@ -4,20 +4,24 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use glam::DVec3;
+
 use super::{Args, Job, frame_name};
 use crate::accel::KeptLists;
 use crate::cli::failure::{Failure, SCENE};
 use crate::cli::input::{Loaded, print_doubts};
+use crate::cli::linear::Coding;
 use crate::cli::render::explain;
 use crate::cli::stats::Stats;
 use crate::doubts::doubts;
 use crate::effects::Effects;
-use crate::engine::{Backend, Engine, Options, Times, device_name, ms};
-use crate::film::{Format, Target};
+use crate::engine::{Backend, Engine, Times, device_name, ms};
+use crate::film::Target;
 use crate::gpu::Gpu;
 use crate::scene::{Scene, Window};
-use crate::settings::Settings;
+use crate::settings::{Quantize, Settings};
 use crate::verify::Verify;
+use crate::views::Frame;
 
 /// What renders, and how long it took to open.
 pub(super) struct Opened {
@@ -28,9 +32,11 @@ pub(super) struct Opened {
 /// A frame that is ready to be rendered.
 pub(super) struct Prepared<'a> {
     pub(super) target: Target,
-    pub(super) format: Format,
+    pub(super) coding: Coding,
     /// What the file says of itself.
     pub(super) note: Option<String>,
+    /// How colours become levels, and the background.
+    pub(super) levels: (Quantize, DVec3),
     pub(super) engine: Engine<'a>,
     /// What is known of it so far.
     pub(super) stats: Box<Stats>,
@@ -96,7 +102,7 @@ impl<'a> Preparer<'a> {
         Some(prepared)
     }
 
-    fn prepared(&mut self, Job { number, frame, path, format }: Job) -> Result<Option<Prepared<'a>>, Failure> {
+    fn prepared(&mut self, Job { number, frame, path, coding }: Job) -> Result<Option<Prepared<'a>>, Failure> {
         let _span = tracing::info_span!("prepare frame", frame = number).entered();
         let start = Instant::now();
         let (args, gpu) = (self.args, self.gpu);
@@ -112,7 +118,7 @@ impl<'a> Preparer<'a> {
         }
         if !args.quiet {
             // Said once for all frames of which there is the same to say.
-            let found = doubts_of(scene, source.file_size, &settings);
+            let found = doubts_of(scene, &frame, source.file_size, &settings);
             if found != self.doubts {
                 print_doubts(&format!("{name}: {}", frame_name(number)), &found);
                 self.doubts = found;
@@ -127,12 +133,14 @@ impl<'a> Preparer<'a> {
         }
         let target = Target::File(path);
         let area = args.part.area((scene.width, scene.height))?;
-        let note = args.part.note(scene, area, (&settings, &effects), (gpu, &selection), format)?;
+        coding.check_size(area.size())?;
+        let note = |format| args.part.note(scene, area, (&settings, &effects), (gpu, &selection), format);
+        let note = coding.levels().map_or(Ok(None), note)?;
+        let levels = (settings.quantize, scene.background);
         if note.as_ref().map_or(Ok(false), |note| note.is_done(&target, true))? {
             return Ok(None);
         }
-        let wants_stats = args.stats || args.stats_json.is_some();
-        let options = Options { count_rays: wants_stats && !args.no_ray_counts, ..Options::default() };
+        let options = args.options(coding);
         let verify = args.verify.unwrap_or_else(|| Verify::usual(scene));
         let engine = Engine::verified(Backend::of(gpu, &selection), viewed, &effects, &options, verify)?;
         let stats = Box::new(Stats {
@@ -160,15 +168,15 @@ impl<'a> Preparer<'a> {
             total_ms: 0.0,
             peak_memory_mib: None,
         });
-        Ok(Some(Prepared { target, format, note: note.map(|note| note.line), engine, stats, start }))
+        Ok(Some(Prepared { target, coding, note: note.map(|note| note.line), levels, engine, stats, start }))
     }
 }
 
 /// What can hardly be meant, where the scene's file says another size.
-fn doubts_of(scene: &mut Scene, file_size: [u32; 2], settings: &Settings) -> Vec<String> {
+fn doubts_of(scene: &mut Scene, frame: &Frame, file_size: [u32; 2], settings: &Settings) -> Vec<String> {
     let size = [scene.width, scene.height];
     [scene.width, scene.height] = file_size;
-    let found = doubts(scene, settings, (size != file_size).then_some(size.into()));
+    let found = doubts(scene, settings, (size != file_size && frame.fov.is_none()).then_some(size.into()));
     [scene.width, scene.height] = size;
     found
 }

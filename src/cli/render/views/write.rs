@@ -4,23 +4,35 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use glam::DVec3;
+
 use super::{Args, frame_name};
 use crate::cli::failure::{DEVICE_LOST, Failure, OK, OUTPUT, STOPPED};
 use crate::cli::guard::Guard;
+use crate::cli::linear::{Coding, Film};
 use crate::cli::output::{err, errln};
 use crate::cli::progress::Progress;
 use crate::cli::render::{say_cut, say_not_finite};
 use crate::cli::stats::{Stats, peak_memory_mib};
 use crate::engine::ms;
-use crate::film::{Format, PictureWriter, Target};
+use crate::film::{OutputError, Target};
+use crate::linear::Linear;
+use crate::settings::Quantize;
 use crate::words::{count, visible};
 
 /// What becomes of a frame, step by step.
 pub(super) enum Step {
     /// Rows follow.
-    Begin { number: u32, target: Target, format: Format, note: Option<String>, size: (u32, u32) },
-    /// 3 bytes a pixel.
-    Rows(Vec<u8>),
+    Begin {
+        number: u32,
+        target: Target,
+        coding: Coding,
+        note: Option<String>,
+        levels: (Quantize, DVec3),
+        size: (u32, u32),
+    },
+    /// 3 bytes a pixel, and colours where the file has them.
+    Rows { rgb: Vec<u8>, linear: Vec<Linear> },
     /// The rows are complete; so many pixels the device could not do, and then began the preparation.
     End { stats: Box<Stats>, cut: u64, start: Instant },
     /// There will be no such frame.
@@ -52,7 +64,7 @@ pub(super) struct Writer<'a> {
 struct File {
     number: u32,
     path: PathBuf,
-    writer: PictureWriter,
+    writer: Film,
     /// What writing it has taken.
     took: Duration,
 }
@@ -67,15 +79,16 @@ impl<'a> Writer<'a> {
 
     pub(super) fn take(&mut self, step: Step) {
         match step {
-            Step::Begin { number, target, format, note, size } => {
-                let opened = self.open(number, &target, format, note.as_deref(), size);
+            Step::Begin { number, target, coding, note, levels, size } => {
+                let opened =
+                    self.open(number, &target, |target| Film::new(coding, target, size, note.as_deref(), levels));
                 self.file = self.noted(opened.map_err(|failure| failure.of(&frame_name(number))));
             }
-            Step::Rows(rgb) => {
+            Step::Rows { rgb, linear } => {
                 let Some(File { number, path, mut writer, took }) = self.file.take() else { return };
                 let _span = tracing::info_span!("write rows").entered();
                 let start = Instant::now();
-                let written = writer.write_rows(&rgb).map(|()| writer);
+                let written = writer.write(&rgb, &linear).map(|()| writer);
                 let written = written.map_err(|error| Failure::from(error).of(&frame_name(number)));
                 let took = took + start.elapsed();
                 self.file = self.noted(written).map(|writer| File { number, path, writer, took });
@@ -105,13 +118,11 @@ impl<'a> Writer<'a> {
         &self,
         number: u32,
         target: &Target,
-        format: Format,
-        note: Option<&str>,
-        size: (u32, u32),
+        film: impl FnOnce(&Target) -> Result<Film, OutputError>,
     ) -> Result<File, Failure> {
         let (start, path) = (Instant::now(), target.argument().to_owned());
         self.guard.check_unwritten("it", &path)?;
-        let writer = PictureWriter::with_note(target, format, size, note)?;
+        let writer = film(target)?;
         Ok(File { number, path, writer, took: start.elapsed() })
     }
 
