@@ -3,11 +3,12 @@
 mod two_devices;
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use serde::Serialize;
 
 use super::failure::{DIFFERENT, Failure, OK, USAGE};
-use super::files::{command, json, report_json, save as save_text};
+use super::files::{command, duration, json, report_json, save as save_text};
 use super::guard::Guard;
 use super::input::{Input, Loaded};
 use super::named::format_by_ending;
@@ -40,6 +41,9 @@ pub(super) struct Args {
     /// Say which known mistake or other convention makes the picture what it is
     #[arg(long, requires = "scene", help_heading = "Output")]
     explain: bool,
+    /// Time for --explain to look for them, in seconds; what was found until it is over is shown. Without it, as long as it takes
+    #[arg(long, value_name = "S", value_parser = duration, requires = "explain", help_heading = "Output")]
+    explain_seconds: Option<Duration>,
     /// List the mistakes and conventions that --explain knows
     #[arg(long, exclusive = true, help_heading = "Output")]
     causes: bool,
@@ -319,6 +323,7 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Compa
     let settings = args.picture.settings()?;
     let viewed = scene.viewed(&settings);
     let effects = args.picture.renderable_effects(&viewed)?;
+    let time = args.explain_seconds;
     let device = args.device.first();
     let sized = encoded.map(|(name, encoded)| encoded.size().map(|size| (name, encoded, size))).transpose()?;
     let encoded = if let Some((name, encoded, (width, height))) = sized {
@@ -331,7 +336,7 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Compa
                 return Err(failure);
             }
             let picture = decode(args, &name, encoded, "the picture", &mut remarks)?;
-            return Ok(Compared::OtherSize(failure, diagnose_size(&picture, &viewed, &effects)));
+            return Ok(Compared::OtherSize(failure, diagnose_size(&picture, &viewed, &effects, time)));
         }
         Some((name, encoded))
     } else {
@@ -363,8 +368,9 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Compa
     let by_sphere = || BySphere::of(&picture, &expected, &scene.viewed(&settings), &explanation.places);
     let spheres = if args.report.is_some() { Some((by_sphere()?, scene.sphere_names.clone())) } else { None };
     let names = [name, format!("reference of {}", loaded.name)];
+    let places = &explanation.places;
     let diagnosis =
-        args.explain.then(|| diagnose(&picture, &expected, &scene.viewed(&settings), &effects, &explanation.places));
+        args.explain.then(|| diagnose(&picture, &expected, &scene.viewed(&settings), &effects, places, time));
     let pictures = [picture, expected];
     Ok(Compared::Pair(Box::new(Pair {
         names,

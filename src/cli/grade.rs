@@ -122,7 +122,7 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
 
     let manner = Manner {
         leniency: if args.lenient { Leniency::Lenient } else { Leniency::Strict },
-        explain: false,
+        explain: None,
         pages: args.html.is_some(),
     };
     let pages = args.html.as_deref().map(Pages::of);
@@ -134,6 +134,7 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
     let mut progress = Progress::new(args.progress, "grade");
     let (scenes, number) = (tasks.len(), submissions.len());
     let mut rows: Vec<(usize, Row)> = Vec::new();
+    let time = Duration::try_from_secs_f64(args.explain_seconds).unwrap_or(Duration::MAX);
     let mut explaining = Duration::ZERO;
     // A reference is there once, for all students.
     for (of_scene, Task { stem, scene, effects, judge }) in tasks.into_iter().enumerate() {
@@ -141,11 +142,12 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
         for (of_student, submission) in submissions.iter().enumerate() {
             progress.set(rows.len() as f64 / (scenes * number) as f64);
             let picture = submission.pictures[of_scene].as_deref();
-            let explain = !args.no_explain && explaining.as_secs_f64() < args.explain_seconds;
+            let left = time.saturating_sub(explaining);
+            let explain = (!args.no_explain && !left.is_zero()).then_some(left);
             let start = Instant::now();
             let Graded { mut row, shown } =
                 assignment.grade(submission.student.as_deref(), picture, Manner { explain, ..manner });
-            if explain {
+            if explain.is_some() {
                 explaining += start.elapsed();
             } else if !args.no_explain && row.verdict == Verdict::Different {
                 row.detail = Some(format!("no cause was sought: the {} s for that are over", args.explain_seconds));

@@ -10,7 +10,7 @@ use super::{
     worst_places,
 };
 use crate::film::{Picture, encode_png};
-use crate::mistakes::{Cause, Diagnosis, Example, Role};
+use crate::mistakes::{CUT_SHORT, Cause, Diagnosis, Example, Role};
 use crate::report::number::short;
 use crate::report::page;
 use crate::scene::Names;
@@ -180,18 +180,17 @@ impl Comparison<'_> {
 }
 
 fn causes(diagnosis: &Diagnosis) -> Markup {
-    let Diagnosis { causes, to_explain, left } = diagnosis;
+    let Diagnosis { causes, to_explain, left, cut_short } = diagnosis;
     html! {
         h2 { "Likely cause" }
-        @if *to_explain == 0 {
-            p { "Nothing has to be explained." }
-        } @else if causes.is_empty() {
-            p { "Nothing known explains the " (count(*to_explain, "pixel")) "." }
+        @if causes.is_empty() {
+            p { "No cause: " (diagnosis.without_causes()) "." }
         } @else {
             ul {
                 @for cause in causes { li { (one_cause(cause)) } }
             }
             p.small { "Of " (count(*to_explain, "pixel")) " the causes leave " (left) "." }
+            @if *cut_short { p { "They are the best that were found: " (CUT_SHORT) "." } }
         }
     }
 }

@@ -230,6 +230,7 @@ fn whatever_is_handed_in_has_its_row() {
     let names: Vec<_> = rows[3].as_object().unwrap().keys().map(String::as_str).collect();
     let expected = [
         "causes",
+        "cut_short",
         "detail",
         "differing",
         "explained",
