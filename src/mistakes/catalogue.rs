@@ -43,6 +43,8 @@ impl std::fmt::Debug for Changes {
 pub(super) struct Right<'a> {
     pub scene: &'a Scene,
     pub variant: &'a Variant,
+    /// With effects that are left out, by their names.
+    pub left_out: &'a [(String, Variant)],
     /// The picture that is to be explained has another size.
     pub other_size: Option<[u32; 2]>,
     /// A unit of length of the file.
@@ -126,6 +128,12 @@ fn with_curve(ways: &mut Ways, detail: &str, curve: Curve) {
 
 /// All known causes, the likelier first.
 pub const CAUSES: &[Known] = &[
+    known("effects-left-out", "the picture has effects that --effects leaves out of the reference", |right, ways| {
+        for (names, whole) in right.left_out {
+            let whole = whole.clone();
+            ways.add(names, move |v| v.simulate(&whole));
+        }
+    }),
     // Levels.
     known(
         "other-convention",

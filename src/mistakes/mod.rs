@@ -135,7 +135,7 @@ pub fn diagnose(
     }
     let case = Case { stage, theirs: picture, all: Sample { differing, equal }, exactly, limit };
     let pixels = if exactly { unexplained.len() } else { case.all.differing.len() };
-    diagnosed(&case, viewed, &right, None, pixels)
+    diagnosed(&case, (viewed, effects), &right, None, pixels)
 }
 
 /// Explains why `picture`, which somebody has of `viewed`, has another size than the scene's: all of its pixels are to be explained.
@@ -154,7 +154,7 @@ pub fn diagnose_size(
     let shown = [picture.width(), picture.height()];
     let all = Sample { differing: all_pixels(picture), equal: Vec::new() };
     let case = Case { stage: Stage::new(viewed, shown), theirs: picture, all, exactly: false, limit };
-    diagnosed(&case, viewed, &right, Some(shown), case.all.differing.len())
+    diagnosed(&case, (viewed, effects), &right, Some(shown), case.all.differing.len())
 }
 
 /// Whether a picture is of one colour all over, which says nothing of how it came about.
@@ -171,13 +171,14 @@ fn all_pixels(picture: &Picture) -> Vec<[u32; 2]> {
 /// What the search finds; where that is nothing, so many pixels are left.
 fn diagnosed(
     case: &Case,
-    viewed: &ViewedScene,
+    (viewed, effects): (&ViewedScene, &Effects),
     right: &Variant,
     other_size: Option<[u32; 2]>,
     pixels: usize,
 ) -> Diagnosis {
     let (unit, scene) = (case.stage.unit, viewed.in_file().0);
-    let found = search(case, &Right { scene, variant: right, other_size, unit });
+    let left_out = Variant::with_left_out(viewed, effects);
+    let found = search(case, &Right { scene, variant: right, left_out: &left_out, other_size, unit });
     let cut_short = case.limit.has_cut();
     let Some(found) = found else { return Diagnosis { cut_short, ..Diagnosis::nothing(pixels) } };
     let cause = |part: Part, role| Cause {
@@ -219,7 +220,9 @@ pub fn planted(viewed: &ViewedScene, effects: &Effects, chosen: &[usize]) -> Pic
 
 fn with_ways<T>(viewed: &ViewedScene, effects: &Effects, use_them: impl FnOnce(&Variant, Vec<Way>) -> T) -> T {
     let right = Variant::new(viewed, effects);
-    let known = Right { scene: viewed.in_file().0, variant: &right, other_size: None, unit: viewed.factor() };
+    let left_out = Variant::with_left_out(viewed, effects);
+    let (scene, unit) = (viewed.in_file().0, viewed.factor());
+    let known = Right { scene, variant: &right, left_out: &left_out, other_size: None, unit };
     use_them(&right, ways(&known))
 }
 

@@ -277,6 +277,26 @@ fn other_sizes_are_explained() {
 }
 
 #[test]
+fn effects_that_are_left_out_are_not_blamed_on_the_picture() {
+    let case = Case::classic("effects/everything.txt");
+    let viewed = case.scene.viewed(&case.settings);
+    for (request, left_out) in
+        [("-shadows", "shadows"), ("-reflections", "reflections"), ("-specular,-shadows", "specular,shadows")]
+    {
+        let effects = Effects::requested(&viewed, &request.parse().unwrap());
+        let reference = Reference::new(&viewed, &effects);
+        let (theirs, expected) = (case.right(), picture(&reference));
+        let explanation = Explanation::of(&theirs, &expected, &reference, &Judge::of(Tier::Fast));
+        let found = diagnose(&theirs, &expected, &viewed, &effects, &explanation.places, None);
+        assert_eq!((names(&found)[0], found.left), ("effects-left-out", 0), "{request}: {found:?}");
+        assert!(found.causes[0].detail.ends_with(&format!("({left_out})")), "{request}: {found:?}");
+        // A picture without them has no cause.
+        let found = diagnose(&expected, &expected, &viewed, &effects, &[], None);
+        assert_eq!(found.causes, [], "{request}");
+    }
+}
+
+#[test]
 fn a_search_ends_when_its_time_is_over() {
     let case = Case::classic("effects/everything.txt");
     // Of noise no cause is good enough, so that all are tried.
