@@ -249,6 +249,12 @@ pub const CAUSES: &[Known] = &[
     known("rotated-180", "rows from bottom to top and columns from right to left", |_, ways| {
         ways.plain(|v| (v.layout.upside_down, v.layout.mirrored) = (true, true));
     }),
+    known("size-swapped", "width and height of RES are exchanged: the whole window in that size", |right, ways| {
+        let [width, height] = right.variant.size;
+        if right.other_size == Some([height, width]) {
+            ways.plain(move |v| v.size = [height, width]);
+        }
+    }),
     known("transposed", "rows and columns are exchanged", |_, ways| {
         ways.add("about the main diagonal", |v| v.layout.transposed = true);
         ways.add("about the other diagonal", |v| {

@@ -258,7 +258,7 @@ fn makes_the_size(right: &Right, name: &str) -> bool {
     let [width, height] = right.variant.size;
     right.other_size.is_none_or(|shown| match name {
         "size-off-by-one" => true,
-        "transposed" | "rotated-90" | "written-by-columns" => shown == [height, width],
+        "size-swapped" | "transposed" | "rotated-90" | "written-by-columns" => shown == [height, width],
         _ => false,
     })
 }

@@ -274,6 +274,17 @@ fn other_sizes_are_explained() {
     let rgb = transposed.flat_map(|(x, y)| right.pixel(y, x)).collect();
     let found = diagnose_size(&Picture::new(right.height(), right.width(), rgb).unwrap(), &viewed, &effects, None);
     assert_eq!((names(&found)[0], found.left), ("transposed", 0));
+    // Much of the background is there, however a picture is turned.
+    let mut lonely = case.scene.clone();
+    lonely.spheres.truncate(1);
+    (lonely.spheres[0].center, lonely.spheres[0].scale) = (DVec3::new(0.5, 0.2, -4.0), DVec3::splat(0.4));
+    (lonely.width, lonely.height) = (72, 48);
+    let mut swapped = lonely.clone();
+    (swapped.width, swapped.height) = (48, 72);
+    let viewed = lonely.viewed(&case.settings);
+    let theirs = Case::rendered(&swapped, &case.settings);
+    let found = diagnose_size(&theirs, &viewed, &Effects::of(&viewed), None);
+    assert_eq!((names(&found)[0], found.left), ("size-swapped", 0));
 }
 
 #[test]
