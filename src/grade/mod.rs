@@ -23,6 +23,7 @@ use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::words::{visible, visible_path};
 
+use folder::what_instead;
 pub use folder::{Extra, Folder, Sought, Submission};
 pub use page::{Pages, overview};
 pub use score::{FULL, RULE, score};
@@ -245,6 +246,11 @@ impl Assignment {
 
     /// The picture, if it has the scene's size; without an error the row says what it is otherwise.
     fn read(&self, path: &Path, manner: Manner, row: &mut Row) -> Result<Picture, Option<ReadError>> {
+        if let Some(what) = what_instead(path) {
+            row.verdict = Verdict::Damaged;
+            row.detail = Some(what);
+            return Err(None);
+        }
         let most = row.pixels.saturating_mul(MOST_BYTES_A_PIXEL).saturating_add(MOST_BYTES_BESIDE);
         let bytes = fs::metadata(path).map_or(0, |found| found.len());
         if bytes > most {

@@ -116,8 +116,7 @@ pub fn diagnose(
     let pixels = all_pixels(picture);
     let differs = |&[i, j]: &[u32; 2]| picture.pixel(i, j) != expected.pixel(i, j);
     // The small renderer has no say where it is not the reference.
-    let is_right =
-        |&[i, j]: &[u32; 2]| !limit.is_over() && right.shows(&stage, [i, j], expected.pixel(i, j), true);
+    let is_right = |&[i, j]: &[u32; 2]| !limit.is_over() && right.shows(&stage, [i, j], expected.pixel(i, j), true);
     let is_near = |&[i, j]: &[u32; 2]| right.shows(&stage, [i, j], picture.pixel(i, j), false);
     let equal: Vec<_> = pixels.par_iter().copied().filter(|pixel| !differs(pixel) && is_right(pixel)).collect();
     let far = unexplained.par_iter().copied().filter(|pixel| is_right(pixel) && !is_near(pixel));
@@ -140,12 +139,7 @@ pub fn diagnose(
 
 /// Explains why `picture`, which somebody has of `viewed`, has another size than the scene's: all of its pixels are to be explained.
 /// The search takes no longer than `time`.
-pub fn diagnose_size(
-    picture: &Picture,
-    viewed: &ViewedScene,
-    effects: &Effects,
-    time: Option<Duration>,
-) -> Diagnosis {
+pub fn diagnose_size(picture: &Picture, viewed: &ViewedScene, effects: &Effects, time: Option<Duration>) -> Diagnosis {
     let limit = Limit::new(time);
     if is_plain(picture) {
         return Diagnosis::nothing(picture.pixels().len());

@@ -325,7 +325,10 @@ fn a_search_ends_when_its_time_is_over() {
     let none = case.diagnosis_within(&theirs, Some(Duration::ZERO));
     assert!(none.cut_short && none.causes.is_empty() && none.report().contains("the time for the search was over"));
     // A time that is long enough changes nothing.
-    let blinn = Case { settings: Settings { specular: Specular::Blinn, ..case.settings }, ..Case::classic("effects/everything.txt") };
+    let blinn = Case {
+        settings: Settings { specular: Specular::Blinn, ..case.settings },
+        ..Case::classic("effects/everything.txt")
+    };
     let theirs = blinn.right();
     assert_eq!(case.diagnosis_within(&theirs, Some(Duration::MAX)), case.diagnosis(&theirs));
 }
