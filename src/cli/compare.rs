@@ -15,8 +15,8 @@ use super::named::format_by_ending;
 use super::options::{DeviceOptions, PictureOptions, SeveralDevices, open_device};
 use super::output::{errln, out, outln};
 use crate::compare::{
-    Band, BySphere, Comparison, Difference, Explanation, Limits, SCALE, SizeMismatch, Verdict, heatmap, three_wide,
-    verdict,
+    Band, BySphere, Comparison, Difference, Explanation, Limits, Metrics, SCALE, SizeMismatch, Verdict, heatmap,
+    three_wide, verdict,
 };
 use crate::cpu::{Judge, Reference};
 use crate::effects::Effects;
@@ -121,6 +121,7 @@ struct Report {
     exceeded: Vec<String>,
     #[serde(flatten)]
     difference: Difference,
+    metrics: Metrics,
     explanation: Option<Explanation>,
     #[serde(flatten)]
     diagnosis: Option<Diagnosis>,
@@ -249,16 +250,16 @@ fn compare(args: &Args) -> Result<u8, Failure> {
     let heat_map = if draws { Some(heat_bands(&picture_a, &picture_b)?) } else { None };
     let Remarks { warnings, notes } = remarks;
     if args.json {
-        let not_finite_pixels = not_finite;
         let report = Report {
             a,
             b,
             verdict,
             exceeded,
             difference,
+            metrics: Metrics::between(&picture_a, &picture_b)?,
             explanation,
             diagnosis,
-            not_finite_pixels,
+            not_finite_pixels: not_finite,
             warnings,
             notes,
             heat_map,
