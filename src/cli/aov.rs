@@ -7,6 +7,7 @@ use clap::ValueEnum;
 use super::failure::{Failure, OUTPUT, USAGE};
 use super::files::check_place;
 use super::guard::Guard;
+use super::named::check_replaced;
 use super::output::errln;
 use crate::aov::{Aov, Layer, TooMany, layers};
 use crate::cpu::Inspector;
@@ -160,8 +161,15 @@ impl Collector {
         }
     }
 
-    /// Calculates the values and writes their files, beside the picture of this name. Says which unless `quiet`.
-    pub(super) fn write(self, name: &str, picture: &Path, guard: &mut Guard, quiet: bool) -> Result<(), Failure> {
+    /// Calculates the values and writes their files, beside the picture of this name; where the scene has named it, over nothing but
+    /// pictures. Says which unless `quiet`.
+    pub(super) fn write(
+        self,
+        name: &str,
+        (picture, is_named): (&Path, bool),
+        guard: &mut Guard,
+        quiet: bool,
+    ) -> Result<(), Failure> {
         let shown = self.picture.as_deref();
         let layers = layers(&self.inspector, self.lights, self.quantize, &self.wanted, shown)?;
         let mut files: Vec<(PathBuf, Contents)> = Vec::new();
@@ -184,6 +192,9 @@ impl Collector {
         for (path, _) in &files {
             check_place(path)?;
             if self.file.is_none() {
+                if is_named {
+                    check_replaced("--aov", path)?;
+                }
                 guard.output("--aov", path)?;
             }
             guard.check_unwritten("--aov", path)?;

@@ -39,11 +39,17 @@ impl Beside {
         }
     }
 
-    /// All rows are there, in the file that `target` names.
-    pub(super) fn finish(self, name: &str, target: &Target, guard: &mut Guard, quiet: bool) -> Result<(), Failure> {
+    /// All rows are there, in the file that `target` names; where the scene has named it, what is beside it replaces only pictures.
+    pub(super) fn finish(
+        self,
+        name: &str,
+        (target, is_named): (&Target, bool),
+        guard: &mut Guard,
+        quiet: bool,
+    ) -> Result<(), Failure> {
         if let Some(rgb) = self.shown {
             show(&Picture::assemble(self.size.0, self.size.1, rgb))?;
         }
-        self.aov.map_or(Ok(()), |aov| aov.write(name, target.argument(), guard, quiet))
+        self.aov.map_or(Ok(()), |aov| aov.write(name, (target.argument(), is_named), guard, quiet))
     }
 }

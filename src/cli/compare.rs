@@ -3,11 +3,12 @@
 mod two_devices;
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use serde::Serialize;
 
 use super::failure::{DIFFERENT, Failure, OK, USAGE};
-use super::files::{command, json, report_json, save as save_text};
+use super::files::{command, duration, json, report_json, save as save_text};
 use super::guard::Guard;
 use super::input::{Input, Loaded};
 use super::named::format_by_ending;
@@ -15,8 +16,8 @@ use super::options::{DeviceOptions, PictureOptions, SeveralDevices, open_device}
 use super::output::{errln, out, outln};
 use super::particles::Reading;
 use crate::compare::{
-    Band, BySphere, Comparison, Difference, Explanation, Limits, SCALE, SizeMismatch, Verdict, heatmap, three_wide,
-    verdict,
+    Band, BySphere, Comparison, Difference, Explanation, Limits, Metrics, SCALE, SizeMismatch, Verdict, heatmap,
+    three_wide, verdict,
 };
 use crate::cpu::{Judge, Reference};
 use crate::effects::Effects;
@@ -41,6 +42,9 @@ pub(super) struct Args {
     /// Say which known mistake or other convention makes the picture what it is
     #[arg(long, requires = "scene", help_heading = "Output")]
     explain: bool,
+    /// Time for --explain to look for them, in seconds; what was found until it is over is shown. Without it, as long as it takes
+    #[arg(long, value_name = "S", value_parser = duration, requires = "explain", help_heading = "Output")]
+    explain_seconds: Option<Duration>,
     /// List the mistakes and conventions that --explain knows
     #[arg(long, exclusive = true, help_heading = "Output")]
     causes: bool,
@@ -118,6 +122,7 @@ struct Report {
     exceeded: Vec<String>,
     #[serde(flatten)]
     difference: Difference,
+    metrics: Metrics,
     explanation: Option<Explanation>,
     #[serde(flatten)]
     diagnosis: Option<Diagnosis>,
@@ -246,16 +251,16 @@ fn compare(args: &Args) -> Result<u8, Failure> {
     let heat_map = if draws { Some(heat_bands(&picture_a, &picture_b)?) } else { None };
     let Remarks { warnings, notes } = remarks;
     if args.json {
-        let not_finite_pixels = not_finite;
         let report = Report {
             a,
             b,
             verdict,
             exceeded,
             difference,
+            metrics: Metrics::between(&picture_a, &picture_b)?,
             explanation,
             diagnosis,
-            not_finite_pixels,
+            not_finite_pixels: not_finite,
             warnings,
             notes,
             heat_map,
@@ -320,6 +325,7 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Compa
     let settings = args.picture.settings()?;
     let viewed = scene.viewed(&settings);
     let effects = args.picture.renderable_effects(&viewed)?;
+    let time = args.explain_seconds;
     let device = args.device.first();
     let sized = encoded.map(|(name, encoded)| encoded.size().map(|size| (name, encoded, size))).transpose()?;
     let encoded = if let Some((name, encoded, (width, height))) = sized {
@@ -332,7 +338,7 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Compa
                 return Err(failure);
             }
             let picture = decode(args, &name, encoded, "the picture", &mut remarks)?;
-            return Ok(Compared::OtherSize(failure, diagnose_size(&picture, &viewed, &effects)));
+            return Ok(Compared::OtherSize(failure, diagnose_size(&picture, &viewed, &effects, time)));
         }
         Some((name, encoded))
     } else {
@@ -364,8 +370,9 @@ fn with_scene(args: &Args, scene: &Path, picture: Option<&Path>) -> Result<Compa
     let by_sphere = || BySphere::of(&picture, &expected, &scene.viewed(&settings), &explanation.places);
     let spheres = if args.report.is_some() { Some((by_sphere()?, scene.sphere_names.clone())) } else { None };
     let names = [name, format!("reference of {}", loaded.name)];
+    let places = &explanation.places;
     let diagnosis =
-        args.explain.then(|| diagnose(&picture, &expected, &scene.viewed(&settings), &effects, &explanation.places));
+        args.explain.then(|| diagnose(&picture, &expected, &scene.viewed(&settings), &effects, places, time));
     let pictures = [picture, expected];
     Ok(Compared::Pair(Box::new(Pair {
         names,

@@ -2,6 +2,7 @@
 
 use std::ffi::OsStr;
 use std::path::Path;
+use std::time::Duration;
 
 use serde::Serialize;
 
@@ -79,4 +80,9 @@ pub(super) fn seconds(text: &str) -> Result<f64, String> {
         Ok(seconds) if seconds.is_finite() && seconds >= 0.0 => Ok(seconds),
         _ => Err("expected a number of seconds, 0 or more".into()),
     }
+}
+
+/// Likewise; what is longer than clocks can tell is as long as that.
+pub(super) fn duration(text: &str) -> Result<Duration, String> {
+    Ok(Duration::try_from_secs_f64(seconds(text)?).unwrap_or(Duration::MAX))
 }

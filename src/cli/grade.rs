@@ -4,6 +4,7 @@ use std::ffi::OsStr;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
@@ -14,9 +15,10 @@ use super::files::{command, save, save_report, seconds};
 use super::guard::Guard;
 use super::input::Loaded;
 use super::options::{DeviceOptions, PictureOptions};
-use super::output::out;
+use super::output::{errln, out};
 use super::particles::Reading;
 use super::progress::{Progress, Style};
+use super::signals::{say_last, say_nothing};
 use crate::cpu::Judge;
 use crate::effects::Effects;
 use crate::film::Leniency;
@@ -27,6 +29,7 @@ use crate::grade::{
 };
 use crate::scene::Scene;
 use crate::settings::Settings;
+use crate::threads::lock;
 use crate::words::{visible, visible_path};
 
 /// Arguments of `trueray grade`.
@@ -69,7 +72,9 @@ pub(super) struct Args {
 /// What `--json` writes.
 #[derive(Serialize)]
 struct Report<'a> {
-    command: String,
+    command: &'a str,
+    /// Whether a signal ended the run before all pictures were graded.
+    interrupted: bool,
     full: usize,
     rows: &'a [Row],
     students: &'a [Student],
@@ -123,7 +128,7 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
 
     let manner = Manner {
         leniency: if args.lenient { Leniency::Lenient } else { Leniency::Strict },
-        explain: false,
+        explain: None,
         pages: args.html.is_some(),
     };
     let pages = args.html.as_deref().map(Pages::of);
@@ -134,19 +139,36 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
     let command = command();
     let mut progress = Progress::new(args.progress, "grade");
     let (scenes, number) = (tasks.len(), submissions.len());
-    let mut rows: Vec<(usize, Row)> = Vec::new();
+    let grades = Arc::new(Mutex::new(Grades {
+        command: command.clone(),
+        html: args.html.clone(),
+        csv: args.csv.clone(),
+        json: args.json.clone(),
+        rows: Vec::new(),
+        extras,
+    }));
+    let last = Arc::clone(&grades);
+    say_last(move || {
+        errln!("trueray: interrupted; what was graded is written");
+        if let Err(failure) = lock(&last).write(true) {
+            failure.report();
+        }
+    });
+    let mut done = 0;
+    let time = Duration::try_from_secs_f64(args.explain_seconds).unwrap_or(Duration::MAX);
     let mut explaining = Duration::ZERO;
     // A reference is there once, for all students.
     for (of_scene, Task { stem, scene, effects, judge }) in tasks.into_iter().enumerate() {
         let assignment = Assignment::new(stem, scene, settings, effects, judge)?;
         for (of_student, submission) in submissions.iter().enumerate() {
-            progress.set(rows.len() as f64 / (scenes * number) as f64);
+            progress.set(f64::from(done) / (scenes * number) as f64);
             let picture = submission.pictures[of_scene].as_deref();
-            let explain = !args.no_explain && explaining.as_secs_f64() < args.explain_seconds;
+            let left = time.saturating_sub(explaining);
+            let explain = (!args.no_explain && !left.is_zero()).then_some(left);
             let start = Instant::now();
             let Graded { mut row, shown } =
                 assignment.grade(submission.student.as_deref(), picture, Manner { explain, ..manner });
-            if explain {
+            if explain.is_some() {
                 explaining += start.elapsed();
             } else if !args.no_explain && row.verdict == Verdict::Different {
                 row.detail = Some(format!("no cause was sought: the {} s for that are over", args.explain_seconds));
@@ -157,29 +179,50 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
                 save(&pages.folder().join(&name), &shown.html(&row, &assignment, &command)?)?;
                 row.page = Some(pages.link(&name));
             }
-            rows.push((place, row));
+            lock(&grades).rows.push((place, row));
+            done += 1;
         }
     }
     progress.finish();
-    rows.sort_by_key(|(place, _)| *place);
-    let rows: Vec<Row> = rows.into_iter().map(|(_, row)| row).collect();
-    let students = students(&rows);
-    let full = rows.iter().filter(|row| row.score == FULL).count();
+    say_nothing();
+    let full = lock(&grades).write(false)?;
+    Ok(if full == scenes * number { OK } else { DIFFERENT })
+}
 
-    if ![&args.csv, &args.json].into_iter().flatten().any(|path| path == Path::new("-")) {
-        out!("{}", report(&rows, &students, &extras, full));
+/// Grades so far, and where they are written.
+struct Grades {
+    command: String,
+    html: Option<PathBuf>,
+    csv: Option<PathBuf>,
+    json: Option<PathBuf>,
+    /// Rows with their places.
+    rows: Vec<(usize, Row)>,
+    extras: Vec<Extra>,
+}
+
+impl Grades {
+    /// Writes what there is, and returns how many rows have the full score.
+    fn write(&mut self, interrupted: bool) -> Result<usize, Failure> {
+        let Self { command, html, csv: csv_file, json, rows, extras } = self;
+        rows.sort_by_key(|(place, _)| *place);
+        let rows: Vec<Row> = rows.iter().map(|(_, row)| row.clone()).collect();
+        let students = students(&rows);
+        let full = rows.iter().filter(|row| row.score == FULL).count();
+        if ![&*csv_file, &*json].into_iter().flatten().any(|path| path == Path::new("-")) {
+            out!("{}", report(&rows, &students, extras, full));
+        }
+        if let Some(path) = html {
+            save(path, &overview(&rows, &students, extras, interrupted, command))?;
+        }
+        if let Some(path) = csv_file {
+            save(path, &csv(&rows))?;
+        }
+        if let Some(path) = json {
+            let report = Report { command, interrupted, full, rows: &rows, students: &students, not_graded: extras };
+            save_report(path, &report)?;
+        }
+        Ok(full)
     }
-    if let Some(path) = &args.html {
-        save(path, &overview(&rows, &students, &extras, &command))?;
-    }
-    if let Some(path) = &args.csv {
-        save(path, &csv(&rows))?;
-    }
-    if let Some(path) = &args.json {
-        let report = Report { command, full, rows: &rows, students: &students, not_graded: &extras };
-        save_report(path, &report)?;
-    }
-    Ok(if full == rows.len() { OK } else { DIFFERENT })
 }
 
 /// The scene files of a folder, by name.

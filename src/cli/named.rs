@@ -36,12 +36,7 @@ pub(super) fn check_named(path: &Path) -> Result<(), Failure> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     let is_picture_name = Format::from_extension(path).is_some() || OTHER_ENDINGS.contains(&ending.as_str());
-    let refused = |why: &str| {
-        // The name may hold anything: it is shown with escapes.
-        let name = name.escape_debug();
-        let help = "help: -o FILE takes any name, --allow-any-output takes OUTPUT as it is";
-        Err(Failure::new(OUTPUT, format!("OUTPUT would write `{name}`, {why}\n  {help}")))
-    };
+    let refused = |why: &str| Err(refusal("OUTPUT", path, why));
     if name.contains(is_hidden) {
         return refused("a name with characters that cannot be seen");
     }
@@ -51,6 +46,12 @@ pub(super) fn check_named(path: &Path) -> Result<(), Failure> {
     if !is_picture_name {
         return refused("which is no picture's name: those end in .ppm, .png, .pfm or .exr");
     }
+    check_replaced("OUTPUT", path)
+}
+
+/// Refuses to replace what is no picture by a file whose name comes from a stranger's scene; `what` writes it.
+pub(super) fn check_replaced(what: &str, path: &Path) -> Result<(), Failure> {
+    let refused = |why: &str| Err(refusal(what, path, why));
     match fs::symlink_metadata(path) {
         Err(_) => Ok(()),
         Ok(found) if found.is_symlink() && leaves_its_folder(path) => refused("a link out of the folder"),
@@ -65,12 +66,20 @@ pub(super) fn check_named(path: &Path) -> Result<(), Failure> {
     }
 }
 
+fn refusal(what: &str, path: &Path, why: &str) -> Failure {
+    // The name may hold anything: it is shown with escapes.
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let name = name.escape_debug();
+    let help = "help: -o FILE takes any name, --allow-any-output takes OUTPUT as it is";
+    Failure::new(OUTPUT, format!("{what} would write `{name}`, {why}\n  {help}"))
+}
+
 fn leaves_its_folder(link: &Path) -> bool {
     let folder = folder_of(link).canonicalize().ok();
     link.canonicalize().ok().as_deref().and_then(Path::parent) != folder.as_deref()
 }
 
-/// Whether a file may be replaced by a picture: it is one, or empty.
+/// Whether a file may be replaced by a picture: it is one, of a kind that is written here, or empty.
 fn begins_like_a_picture(path: &Path) -> bool {
     let mut start = Vec::new();
     let read = File::open(path).and_then(|file| file.take(8).read_to_end(&mut start));

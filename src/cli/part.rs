@@ -24,7 +24,7 @@ use crate::words::visible_path;
 pub(super) struct PartOptions {
     /// Render no more than these pixels, columns X0 to X1 and rows Y0 to Y1 from the top left, the last ones exclusive; the file has
     /// this size and says what it is of. `trueray merge` puts parts together
-    #[arg(long, value_name = "X0,X1,Y0,Y1", conflicts_with = "tile", conflicts_with_all = WHOLE)]
+    #[arg(long, value_name = "X0,X1,Y0,Y1", allow_hyphen_values = true, conflicts_with = "tile", conflicts_with_all = WHOLE)]
     crop: Option<Area>,
     /// Render no more than part I of N, from 0: whole rows
     #[arg(long, value_name = "I/N", conflicts_with_all = WHOLE)]

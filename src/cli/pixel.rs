@@ -30,11 +30,11 @@ pub(super) struct Args {
     #[arg(value_name = "SCENE", help_heading = "Scene")]
     scene: PathBuf,
     /// Column, 0 is the leftmost
-    #[arg(value_name = "X", help_heading = "Scene")]
-    x: u32,
+    #[arg(value_name = "X", allow_negative_numbers = true, help_heading = "Scene")]
+    x: i64,
     /// Row, 0 is the topmost
-    #[arg(value_name = "Y", help_heading = "Scene")]
-    y: u32,
+    #[arg(value_name = "Y", allow_negative_numbers = true, help_heading = "Scene")]
+    y: i64,
     #[command(flatten)]
     picture: PictureOptions,
     /// Device whose tiers are shown beside the reference: auto, cpu (none), gpu, an index of `trueray devices`, part of a name or driver,
@@ -103,12 +103,12 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         Input::read(&args.scene, &Reading::usual(args.picture.resolution()))?.into_renderable(args.json)?;
     args.picture.frame(&mut loaded.scene)?;
     let (scene, settings) = (&loaded.scene, args.picture.settings()?);
-    let (x, y) = (args.x, args.y);
-    if x >= scene.width || y >= scene.height {
-        let (columns, rows) = (scene.width - 1, scene.height - 1);
-        let message = format!("there is no pixel {x} {y}: columns are 0 to {columns}, rows 0 to {rows}");
+    let within = |at: i64, size: u32| u32::try_from(at).ok().filter(|&at| at < size);
+    let (Some(x), Some(y)) = (within(args.x, scene.width), within(args.y, scene.height)) else {
+        let (Args { x, y, .. }, columns, rows) = (args, scene.width - 1, scene.height - 1);
+        let message = format!("there is no pixel {x} {y}: x is from 0 to {columns}, y from 0 to {rows}");
         return Err(Failure::new(USAGE, message));
-    }
+    };
     let viewed = scene.viewed(&settings);
     let effects = args.picture.renderable_effects(&viewed)?;
     let (gpu, no_device) = open(&args.device)?;

@@ -331,7 +331,7 @@ fn render_one(
     progress.finish();
     write_time += finishing.elapsed();
 
-    beside.finish(&loaded.name, &target, guard, args.quiet)?;
+    beside.finish(&loaded.name, (&target, is_named_by_scene(args)), guard, args.quiet)?;
     certificate.write((settings, &effects), gpu, &selection, stages)?;
     say_cut(&loaded.name, if args.quiet { 0 } else { cut }, &device_name(gpu));
     say_not_finite(&loaded.name, not_finite);
@@ -405,6 +405,11 @@ fn folder(args: &Args) -> Option<&Path> {
     }
 }
 
+/// Whether the file is the one that OUTPUT names, and may not be any.
+fn is_named_by_scene(args: &Args) -> bool {
+    folder(args).is_some() && !args.allow_any_output
+}
+
 fn target(args: &Args, loaded: &Loaded) -> Target {
     match (&args.output, folder(args)) {
         (Some(path), None) => Target::from_argument(path.as_os_str()),
@@ -419,7 +424,7 @@ fn job(args: &Args, loaded: Loaded, target: Target) -> Result<Job, Failure> {
         return Err(Failure::new(USAGE, "--show prints to standard output, which the picture is written to"));
     }
     if let Target::File(path) = &target {
-        if folder(args).is_some() && !args.allow_any_output {
+        if is_named_by_scene(args) {
             check_named(path).map_err(|failure| failure.of(&loaded.name))?;
         }
         check_place(path)?;

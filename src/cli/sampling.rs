@@ -9,7 +9,7 @@ use crate::sampling::{Density, Fill, Fovea, Samples};
 pub(super) struct SamplingOptions {
     /// Sample all pixels around this place and ever fewer away from it: `center`, or X,Y from the top left in parts of the
     /// picture (0.5,0.5) or in pixels (320px,240px)
-    #[arg(long, value_name = "center|X,Y", value_parser = picture_point, group = "partial")]
+    #[arg(long, value_name = "center|X,Y", allow_hyphen_values = true, value_parser = picture_point, group = "partial")]
     foveate: Option<PicturePoint>,
     /// How far all pixels are sampled, in parts of the picture's shorter side
     #[arg(long, value_name = "R", default_value_t = 0.15, value_parser = radius, requires = "foveate", conflicts_with = "sparse")]

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::flip::mean_flip;
 use super::{SizeMismatch, level};
 use crate::film::Picture;
 
@@ -24,6 +25,8 @@ pub struct Metrics {
     pub psnr: f64,
     /// Mean structural similarity, −1 to 1; `None` for pictures that are narrower or lower than [`SSIM_WINDOW`].
     pub ssim: Option<f64>,
+    /// Mean FLIP, 0 to 1: what is seen by somebody who flips between the pictures at 67 pixels a degree.
+    pub flip: f64,
     /// The level difference that half of the pixels do not exceed.
     pub level_p50: u8,
     /// Likewise 95 of 100 pixels.
@@ -51,6 +54,7 @@ impl Metrics {
             rmse,
             psnr: 20.0 * (255.0 / rmse).log10(),
             ssim: ssim(a, b),
+            flip: mean_flip(a, b),
             level_p50: percentile(50),
             level_p95: percentile(95),
             level_p99: percentile(99),

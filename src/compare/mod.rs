@@ -3,6 +3,7 @@
 //! The *level difference* of two pixels is the greatest absolute difference over their three channels, 0 to 255.
 
 mod explain;
+mod flip;
 mod heatmap;
 mod metrics;
 mod page;
@@ -17,6 +18,7 @@ use crate::film::Picture;
 use crate::words::count;
 
 pub use explain::{Explanation, UnexplainedPixel};
+pub use flip::PIXELS_PER_DEGREE;
 pub use heatmap::{Band, SCALE, heatmap, three_wide};
 pub use metrics::{Metrics, SSIM_WINDOW};
 pub use page::Comparison;

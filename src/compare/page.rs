@@ -6,11 +6,11 @@ use maud::{Markup, PreEscaped, html};
 
 use super::heatmap::pixel_heat;
 use super::{
-    Band, BySphere, Difference, Explanation, Metrics, SCALE, SSIM_WINDOW, SizeMismatch, heatmap, level, value,
-    worst_places,
+    Band, BySphere, Difference, Explanation, Metrics, PIXELS_PER_DEGREE, SCALE, SSIM_WINDOW, SizeMismatch, heatmap,
+    level, value, worst_places,
 };
 use crate::film::{Picture, encode_png};
-use crate::mistakes::{Cause, Diagnosis, Example, Role};
+use crate::mistakes::{CUT_SHORT, Cause, Diagnosis, Example, Role};
 use crate::report::number::short;
 use crate::report::page;
 use crate::scene::Names;
@@ -65,7 +65,7 @@ impl Comparison<'_> {
 
     fn summary(&self, metrics: &Metrics) -> Markup {
         let Difference { width, height, pixels, mean, .. } = self.difference;
-        let Metrics { rmse, psnr, ssim, level_p50, level_p95, level_p99, level_max } = metrics;
+        let Metrics { rmse, psnr, ssim, flip, level_p50, level_p95, level_p99, level_max } = metrics;
         html! {
             dl {
                 dt { "Verdict" } dd { b { (self.verdict) } }
@@ -78,6 +78,7 @@ impl Comparison<'_> {
                 dt { "PSNR" } dd { @if psnr.is_finite() { (format!("{psnr:.2} dB")) } @else { "infinite" } }
                 dt { "SSIM" }
                 dd { @match ssim { Some(ssim) => (format!("{ssim:.5}")), None => "the pictures are too small for it" } }
+                dt { "FLIP" } dd { (format!("{flip:.5}")) }
                 dt { "Level difference" }
                 dd { "median " (level_p50) ", p95 " (level_p95) ", p99 " (level_p99) ", greatest " (level_max) }
                 @for note in &self.difference.resemblances { dt { "Note" } dd { (note.to_string()) } }
@@ -180,18 +181,17 @@ impl Comparison<'_> {
 }
 
 fn causes(diagnosis: &Diagnosis) -> Markup {
-    let Diagnosis { causes, to_explain, left } = diagnosis;
+    let Diagnosis { causes, to_explain, left, cut_short } = diagnosis;
     html! {
         h2 { "Likely cause" }
-        @if *to_explain == 0 {
-            p { "Nothing has to be explained." }
-        } @else if causes.is_empty() {
-            p { "Nothing known explains the " (count(*to_explain, "pixel")) "." }
+        @if causes.is_empty() {
+            p { "No cause: " (diagnosis.without_causes()) "." }
         } @else {
             ul {
                 @for cause in causes { li { (one_cause(cause)) } }
             }
             p.small { "Of " (count(*to_explain, "pixel")) " the causes leave " (left) "." }
+            @if *cut_short { p { "They are the best that were found: " (CUT_SHORT) "." } }
         }
     }
 }
@@ -263,6 +263,11 @@ fn method() -> Markup {
             "SSIM is the mean over all windows of " (SSIM_WINDOW) " × " (SSIM_WINDOW) " pixels within the picture, Gaussian \
              with σ = 1.5, K₁ = 0.01, K₂ = 0.03, of Rec. 601’s luma: Wang, Bovik, Sheikh and Simoncelli, IEEE Transactions on \
              Image Processing 13 (2004)."
+        }
+        p {
+            "FLIP is the mean of what is seen when the pictures alternate, 0 to 1, at " (PIXELS_PER_DEGREE) " pixels a degree: \
+             Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström and Fairchild, Proceedings of the ACM on Computer Graphics \
+             and Interactive Techniques 3 (2020)."
         }
     }
 }

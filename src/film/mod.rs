@@ -13,6 +13,7 @@ mod ppm;
 mod problem;
 mod read;
 mod rows;
+mod surplus;
 mod write;
 
 use std::fmt;

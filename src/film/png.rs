@@ -7,6 +7,7 @@ use png::{BitDepth, ColorType, Decoder, Reader, Transformations};
 
 use super::problem::{Problem, ProblemKind, Warning};
 use super::read::{Leniency, Reading};
+use super::surplus::{SURPLUS, has_surplus};
 use super::{Picture, sample_count};
 use crate::panics;
 use crate::words::count;
@@ -162,6 +163,12 @@ fn pixels(bytes: &[u8], width: u32, height: u32, leniency: Leniency) -> Result<(
     reader.finish().map_err(damaged)?;
     if rows.rgb.len() != samples {
         return Err(damaged("rows are missing"));
+    }
+    if has_surplus(bytes, reader.info())? {
+        match leniency {
+            Leniency::Strict => return Err(Problem::mendable(SURPLUS)),
+            Leniency::Lenient => rows.warnings.push(Warning::PngSurplus),
+        }
     }
     Ok((rows.rgb, rows.warnings))
 }

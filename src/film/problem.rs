@@ -4,6 +4,7 @@ use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use super::surplus::SURPLUS;
 use crate::words::{count, visible_path};
 
 /// A picture file that could not be read. Its text names the file, the place in it and what is wrong there.
@@ -180,6 +181,8 @@ pub enum Warning {
         /// How many bytes.
         bytes: u64,
     },
+    /// Pixel data of a PNG file beyond its picture were ignored.
+    PngSurplus,
     /// Samples were scaled, with rounding, from 0…maximum to 0…255.
     Scaled {
         /// The greatest value in the file's range.
@@ -205,6 +208,7 @@ impl fmt::Display for Warning {
             Self::PngTrailing { bytes } => {
                 write!(f, "data after the end of the PNG, ignored: {}", count(*bytes, "byte"))
             }
+            Self::PngSurplus => write!(f, "{SURPLUS}, ignored"),
             Self::Scaled { maximum } => write!(f, "samples were scaled from 0..{maximum} to 0..255"),
             Self::AlphaDropped { pixels } => write!(f, "pixels not opaque, transparency ignored: {pixels}"),
         }

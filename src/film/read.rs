@@ -15,7 +15,7 @@ pub enum Leniency {
     Strict,
     /// What has an obvious meaning is taken for that, with a warning: samples out of range are clamped, missing samples
     /// are 0, data after the last sample and transparency are ignored, 16-bit samples are rounded to 8 bits, and a PNG that is cut
-    /// off after its pixels or followed by other data is taken for what it holds.
+    /// off after its pixels, has more of them than its picture or is followed by other data is taken for what it holds.
     Lenient,
 }
 

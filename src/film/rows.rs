@@ -8,6 +8,7 @@ use ::png::{BitDepth, ColorType, Decoder, DecodingError, Info, Limits, Reader};
 
 use super::problem::{Problem, ProblemKind, ReadError};
 use super::read::{Kind, recognise};
+use super::surplus::{SURPLUS, has_surplus};
 use super::{png, ppm, sample_count};
 use crate::panics;
 
@@ -93,7 +94,13 @@ impl RowReader {
         let finished = match self.rows {
             // Its length is right.
             Rows::P6(_) => Ok(()),
-            Rows::Png(mut reader) => decoded(|| reader.finish().map_err(|error| damaged(&error))),
+            Rows::Png(mut reader) => {
+                let ended = decoded(|| reader.finish().map_err(|error| damaged(&error)));
+                ended.and_then(|()| {
+                    let file = BufReader::new(File::open(&self.path)?);
+                    if has_surplus(file, reader.info())? { Err(Problem::fatal(SURPLUS)) } else { Ok(()) }
+                })
+            }
         };
         finished.map_err(|problem| ReadError { path: self.path, problem })
     }

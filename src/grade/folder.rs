@@ -1,7 +1,7 @@
 //! Which file is whose picture of which scene.
 
 use std::ffi::OsStr;
-use std::fs;
+use std::fs::{self, FileType};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -53,7 +53,7 @@ fn ending(file: &Path) -> Option<usize> {
 /// What one student has handed in.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Submission {
-    /// The student: the folder's name, where each student has one.
+    /// The student: the folder's name, where each student has one; of names that look alike all but the first have a number.
     pub student: Option<String>,
     /// The picture of each scene, in the order of the scenes.
     pub pictures: Vec<Option<PathBuf>>,
@@ -87,7 +87,7 @@ impl Folder {
         let mut found = Self { submissions: Vec::new(), extras: Vec::new() };
         if pictures.is_empty() && !folders.is_empty() {
             for folder in folders {
-                let student = visible_path(Path::new(folder.file_name().unwrap_or_default()));
+                let student = found.new_name(&visible_path(Path::new(folder.file_name().unwrap_or_default())));
                 let files = all_pictures(&folder, &mut found.extras);
                 // Where a former run has put its pages.
                 if files.is_empty() && student.ends_with("_files") {
@@ -107,12 +107,23 @@ impl Folder {
         Ok(found)
     }
 
+    /// A student's name that no other has: names that are not UTF-8 or have hidden characters can look alike.
+    fn new_name(&self, name: &str) -> String {
+        let is_new = |name: &String| self.submissions.iter().all(|known| known.student.as_ref() != Some(name));
+        let numbered = (2..).map(|number| format!("{name} ({number})"));
+        std::iter::once(name.to_owned()).chain(numbered).find(is_new).unwrap_or_default()
+    }
+
     fn add(&mut self, student: Option<String>, files: &[PathBuf], scenes: &[Sought]) {
         let mut is_used = vec![false; files.len()];
         let mut pictures = Vec::new();
         for scene in scenes {
-            let fitting = files.iter().enumerate().filter_map(|(at, file)| Some((scene.rank(file)?, at)));
-            let best = fitting.min().map(|(_, at)| at);
+            // What is no file is graded only where there is nothing else.
+            let fitting = files
+                .iter()
+                .enumerate()
+                .filter_map(|(at, file)| Some((what_instead(file).is_some(), scene.rank(file)?, at)));
+            let best = fitting.min().map(|(.., at)| at);
             if let Some(at) = best {
                 is_used[at] = true;
             }
@@ -130,6 +141,34 @@ impl Folder {
     }
 }
 
+/// What bears a picture's name and is no file, in words: of pipes and devices one could read for ever.
+pub(super) fn what_instead(path: &Path) -> Option<String> {
+    let kind = match fs::metadata(path) {
+        Ok(found) if found.is_file() => return None,
+        Ok(found) => found.file_type(),
+        Err(_) if path.is_symlink() => return Some("a link to a file that is not there".into()),
+        Err(error) => return Some(error.to_string()),
+    };
+    let what = if kind.is_dir() { "a link to a folder" } else { special(kind).unwrap_or("no regular file") };
+    Some(format!("{what}, no picture"))
+}
+
+#[cfg(unix)]
+fn special(kind: FileType) -> Option<&'static str> {
+    use std::os::unix::fs::FileTypeExt;
+    let kinds = [
+        (kind.is_fifo(), "a pipe"),
+        (kind.is_socket(), "a socket"),
+        (kind.is_block_device() || kind.is_char_device(), "a device"),
+    ];
+    kinds.into_iter().find(|(is_it, _)| *is_it).map(|(_, what)| what)
+}
+
+#[cfg(not(unix))]
+fn special(_kind: FileType) -> Option<&'static str> {
+    None
+}
+
 /// Pictures and folders in a folder, by name, but for hidden ones; links to folders where they are to be followed.
 fn entries(folder: &Path, follows: bool) -> io::Result<(Vec<PathBuf>, Vec<PathBuf>)> {
     let (mut pictures, mut folders) = (Vec::new(), Vec::new());
@@ -142,8 +181,7 @@ fn entries(folder: &Path, follows: bool) -> io::Result<(Vec<PathBuf>, Vec<PathBu
         let is_folder = if follows { path.is_dir() } else { entry.file_type()?.is_dir() };
         if is_folder {
             folders.push(path);
-        } else if ending(&path).is_some() && fs::metadata(&path).is_ok_and(|found| found.is_file()) {
-            // Of pipes and devices one could read for ever.
+        } else if ending(&path).is_some() {
             pictures.push(path);
         }
     }

@@ -8,6 +8,7 @@ mod table;
 use std::fmt;
 use std::fs;
 use std::path::Path;
+use std::time::Duration;
 
 use serde::Serialize;
 
@@ -20,8 +21,9 @@ use crate::gpu;
 use crate::mistakes::{Cause, Diagnosis, Role, diagnose, diagnose_size};
 use crate::scene::Scene;
 use crate::settings::Settings;
-use crate::words::{count, visible, visible_path};
+use crate::words::{visible, visible_path};
 
+use folder::what_instead;
 pub use folder::{Extra, Folder, Sought, Submission};
 pub use page::{Pages, overview};
 pub use score::{FULL, RULE, score};
@@ -103,6 +105,8 @@ pub struct Row {
     pub unexplained: Option<u64>,
     /// What may have happened, the likelier first.
     pub causes: Vec<Cause>,
+    /// Whether the time for seeking causes was over before all were tried.
+    pub cut_short: bool,
     /// Why the causes are not known, or why nothing could be compared.
     pub detail: Option<String>,
     /// What had to be got over in reading the picture.
@@ -125,10 +129,16 @@ impl Row {
             explained: None,
             unexplained: None,
             causes: Vec::new(),
+            cut_short: false,
             detail: None,
             warnings: Vec::new(),
             page: None,
         }
+    }
+
+    fn note(&mut self, diagnosis: &Diagnosis) {
+        self.causes.clone_from(&diagnosis.causes);
+        self.cut_short = diagnosis.cut_short;
     }
 
     fn refuse(&mut self, error: &ReadError) {
@@ -182,8 +192,8 @@ pub fn students(rows: &[Row]) -> Vec<Student> {
 pub struct Manner {
     /// Whether malformed pictures are repaired.
     pub leniency: Leniency,
-    /// Whether causes are sought.
-    pub explain: bool,
+    /// How long causes are sought of a picture at the most; `None` where they are not.
+    pub explain: Option<Duration>,
     /// Whether there will be pages.
     pub pages: bool,
 }
@@ -236,6 +246,11 @@ impl Assignment {
 
     /// The picture, if it has the scene's size; without an error the row says what it is otherwise.
     fn read(&self, path: &Path, manner: Manner, row: &mut Row) -> Result<Picture, Option<ReadError>> {
+        if let Some(what) = what_instead(path) {
+            row.verdict = Verdict::Damaged;
+            row.detail = Some(what);
+            return Err(None);
+        }
         let most = row.pixels.saturating_mul(MOST_BYTES_A_PIXEL).saturating_add(MOST_BYTES_BESIDE);
         let bytes = fs::metadata(path).map_or(0, |found| found.len());
         if bytes > most {
@@ -250,12 +265,12 @@ impl Assignment {
             row.detail = Some(format!("{} × {} pixels, the scene has {} × {}", size.0, size.1, wanted.0, wanted.1));
             // A picture that can have no pixel of the scene is not worth its memory.
             let is_near = u64::from(size.0) * u64::from(size.1) <= row.pixels.saturating_mul(4);
-            if manner.explain
+            if let Some(time) = manner.explain
                 && is_near
                 && let Ok(reading) = encoded.decode(manner.leniency)
             {
                 let viewed = self.scene.viewed(&self.settings);
-                row.causes = diagnose_size(&reading.picture, &viewed, &self.effects).causes;
+                row.note(&diagnose_size(&reading.picture, &viewed, &self.effects, Some(time)));
             }
             return Err(None);
         }
@@ -278,12 +293,13 @@ impl Assignment {
         row.max_level = Some(difference.max_level);
         row.explained = Some(explanation.differing - explanation.unexplained);
         row.unexplained = Some(explanation.unexplained);
-        let diagnosis = (manner.explain && row.verdict == Verdict::Different)
-            .then(|| diagnose(&picture, &self.expected, &viewed, &self.effects, &explanation.places));
+        let time = manner.explain.filter(|_| row.verdict == Verdict::Different);
+        let diagnosis = time
+            .map(|time| diagnose(&picture, &self.expected, &viewed, &self.effects, &explanation.places, Some(time)));
         if let Some(diagnosis) = &diagnosis {
-            row.causes.clone_from(&diagnosis.causes);
+            row.note(diagnosis);
             if row.causes.is_empty() {
-                row.detail = Some(format!("nothing known explains {}", count(diagnosis.to_explain, "pixel")));
+                row.detail = Some(diagnosis.without_causes());
             }
         }
         let by_sphere = || BySphere::of(&picture, &self.expected, &viewed, &explanation.places);

@@ -48,11 +48,12 @@ impl Pages {
     }
 }
 
-/// The overview of all rows; `command` is what made it.
-pub fn overview(rows: &[Row], students: &[Student], extras: &[Extra], command: &str) -> String {
+/// The overview of all rows, which may be those of an interrupted run; `command` is what made it.
+pub fn overview(rows: &[Row], students: &[Student], extras: &[Extra], interrupted: bool, command: &str) -> String {
     let full = rows.iter().filter(|row| row.score == FULL).count();
     let about = format!("{} pictures, {full} of them with the full score", rows.len());
     let content = html! {
+        @if interrupted { p { b { "Interrupted: not all pictures were graded, and means are of those that were." } } }
         (pictures(rows))
         @if students.len() > 1 && rows.len() > students.len() { (means(students)) }
         @if !extras.is_empty() { (not_graded(extras)) }

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::limit::Limit;
 use super::variant::{Stage, Variant};
 use crate::film::Picture;
 use crate::random::Random;
@@ -33,6 +34,8 @@ pub(super) struct Case<'a> {
     pub all: Sample,
     /// Whether rounding is no excuse.
     pub exactly: bool,
+    /// How long the search may take.
+    pub limit: Limit,
 }
 
 impl Case<'_> {
@@ -56,40 +59,60 @@ impl Case<'_> {
         Sample { differing: pick(&self.all.differing), equal: pick(&self.all.equal) }
     }
 
-    /// How well `variant` explains the picture, by a sample of it.
-    pub(super) fn score(&self, variant: &Variant, sample: &Sample) -> Score {
-        let part = |pixels: &[[u32; 2]], of: usize| {
-            let (mut left, mut error) = (0_u32, 0_u32);
-            for &pixel in pixels {
-                let off = self.off(variant, pixel);
-                left += u32::from(off > 0);
-                error += off;
-            }
-            let weight = of as f64 / pixels.len().max(1) as f64;
-            (f64::from(left) * weight, f64::from(error) * weight)
-        };
-        let (left, error) = part(&sample.differing, self.all.differing.len());
-        let (spoiled, spoiled_error) = part(&sample.equal, self.all.equal.len());
-        Score { left: left + spoiled, error: error + spoiled_error }
+    /// How well `variant` explains the picture, by a sample of it; `None` where the time is over before that is known.
+    pub(super) fn score(&self, variant: &Variant, sample: &Sample) -> Option<Score> {
+        self.weighed(sample, |pixels| self.sum(variant, pixels, true))
     }
 
     /// Likewise, in parallel: for many pixels and few variants.
-    pub(super) fn score_in_parallel(&self, variant: &Variant, sample: &Sample) -> Score {
+    pub(super) fn score_in_parallel(&self, variant: &Variant, sample: &Sample) -> Option<Score> {
         const CHUNK: usize = 512;
-        let part = |pixels: &[[u32; 2]], of: usize| {
-            let each = |chunk: &[[u32; 2]]| {
-                chunk
-                    .iter()
-                    .map(|&pixel| self.off(variant, pixel))
-                    .fold((0_u64, 0_u64), |(left, error), off| (left + u64::from(off > 0), error + u64::from(off)))
-            };
-            let (left, error) = pixels.par_chunks(CHUNK).map(each).reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
-            let weight = of as f64 / pixels.len().max(1) as f64;
-            (left as f64 * weight, error as f64 * weight)
+        let sum = |pixels: &[[u32; 2]]| {
+            let chunks = pixels.par_chunks(CHUNK).map(|chunk| self.sum(variant, chunk, true));
+            chunks.try_reduce(|| (0, 0), |a, b| Some((a.0 + b.0, a.1 + b.1)))
         };
-        let (left, error) = part(&sample.differing, self.all.differing.len());
-        let (spoiled, spoiled_error) = part(&sample.equal, self.all.equal.len());
-        Score { left: left + spoiled, error: error + spoiled_error }
+        self.weighed(sample, sum)
+    }
+
+    /// Likewise by very few pixels, whether the time is over or not.
+    pub(super) fn rough_score(&self, variant: &Variant) -> Option<Score> {
+        const FEW: usize = 40;
+        self.weighed(&self.sample(FEW), |pixels| self.sum(variant, pixels, false))
+    }
+
+    /// The sum of all differences by a sample, infinite where the time is over.
+    pub(super) fn error(&self, variant: &Variant, sample: &Sample) -> f64 {
+        self.score(variant, sample).map_or(f64::INFINITY, |score| score.error)
+    }
+
+    /// The score of the whole picture, of which a sample has these sums.
+    fn weighed(&self, sample: &Sample, sum: impl Fn(&[[u32; 2]]) -> Option<(u64, u64)>) -> Option<Score> {
+        let part = |pixels: &[[u32; 2]], of: usize| {
+            let (left, error) = sum(pixels)?;
+            let weight = of as f64 / pixels.len().max(1) as f64;
+            Some((left as f64 * weight, error as f64 * weight))
+        };
+        let (left, error) = part(&sample.differing, self.all.differing.len())?;
+        let (spoiled, spoiled_error) = part(&sample.equal, self.all.equal.len())?;
+        Some(Score { left: left + spoiled, error: error + spoiled_error })
+    }
+
+    /// How many of the pixels differ from the variant, and by how many levels.
+    fn sum(&self, variant: &Variant, pixels: &[[u32; 2]], is_limited: bool) -> Option<(u64, u64)> {
+        // Looking at the clock takes a tenth of a pixel's time.
+        const BETWEEN_LOOKS: usize = 8;
+        let (mut left, mut error) = (0, 0);
+        for few in pixels.chunks(BETWEEN_LOOKS) {
+            if is_limited && self.limit.is_over() {
+                return None;
+            }
+            for &pixel in few {
+                let off = u64::from(self.off(variant, pixel));
+                left += u64::from(off > 0);
+                error += off;
+            }
+        }
+        Some((left, error))
     }
 
     /// By how many levels a pixel differs from the variant, all channels together; 0 where rounding explains it.

@@ -43,6 +43,8 @@ impl std::fmt::Debug for Changes {
 pub(super) struct Right<'a> {
     pub scene: &'a Scene,
     pub variant: &'a Variant,
+    /// With effects that are left out, by their names.
+    pub left_out: &'a [(String, Variant)],
     /// The picture that is to be explained has another size.
     pub other_size: Option<[u32; 2]>,
     /// A unit of length of the file.
@@ -126,6 +128,12 @@ fn with_curve(ways: &mut Ways, detail: &str, curve: Curve) {
 
 /// All known causes, the likelier first.
 pub const CAUSES: &[Known] = &[
+    known("effects-left-out", "the picture has effects that --effects leaves out of the reference", |right, ways| {
+        for (names, whole) in right.left_out {
+            let whole = whole.clone();
+            ways.add(names, move |v| v.simulate(&whole));
+        }
+    }),
     // Levels.
     known(
         "other-convention",
@@ -240,6 +248,12 @@ pub const CAUSES: &[Known] = &[
     }),
     known("rotated-180", "rows from bottom to top and columns from right to left", |_, ways| {
         ways.plain(|v| (v.layout.upside_down, v.layout.mirrored) = (true, true));
+    }),
+    known("size-swapped", "width and height of RES are exchanged: the whole window in that size", |right, ways| {
+        let [width, height] = right.variant.size;
+        if right.other_size == Some([height, width]) {
+            ways.plain(move |v| v.size = [height, width]);
+        }
     }),
     known("transposed", "rows and columns are exchanged", |_, ways| {
         ways.add("about the main diagonal", |v| v.layout.transposed = true);

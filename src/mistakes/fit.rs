@@ -62,7 +62,7 @@ pub(super) fn fits(case: &Case, scene: &Scene, base: &Variant, [sample, few]: [&
         tasks.push(Box::new(move |f: &Fitter| f.moved(sphere)));
         tasks.push(Box::new(move |f: &Fitter| f.scaled(sphere)));
     }
-    tasks.into_par_iter().flat_map_iter(|task| task(&fitter)).collect()
+    tasks.into_par_iter().filter(|_| !case.limit.is_over()).flat_map_iter(|task| task(&fitter)).collect()
 }
 
 type Task = Box<dyn Fn(&Fitter) -> Vec<Way> + Send + Sync>;
@@ -142,6 +142,9 @@ impl Fitter<'_> {
     /// colours without it and with 1 in its place.
     fn ask(&self, [none, one]: [&Variant; 2], mut hear: impl FnMut(usize, (f64, f64))) {
         for &pixel in &self.sample.differing {
+            if self.case.limit.is_over() {
+                return;
+            }
             let wanted = self.base.encoding.color(self.case.levels(pixel));
             let without = none.color(&self.case.stage, pixel);
             let part = one.color(&self.case.stage, pixel) - without;
@@ -179,7 +182,7 @@ impl Fitter<'_> {
     /// The middle of the colours around `fitted` for which the fewest pixels of the sample are off, channel by channel.
     fn refined(&self, set: &Setter, fitted: DVec3) -> DVec3 {
         let mut best = fitted;
-        let error = |color: DVec3| self.case.score(&self.with(|w| set(w, color)), self.few).error;
+        let error = |color: DVec3| self.case.error(&self.with(|w| set(w, color)), self.few);
         for c in 0..3 {
             let steps = [-0.004, -0.002, -0.001, -0.0005, 0.0, 0.0005, 0.001, 0.002, 0.004];
             let tried = steps.map(|step| {
@@ -232,7 +235,7 @@ impl Fitter<'_> {
         let (center, scale) = (body.material.center, body.material.scale);
         let error = |sample: &Sample, shift: DVec3| {
             let variant = self.with(|w| w.reshape(sphere, center + shift, scale));
-            self.case.score(&variant, sample).error
+            self.case.error(&variant, sample)
         };
         let radius = scale.abs().max_element();
         let mut starts = vec![DVec3::ZERO];
@@ -263,7 +266,7 @@ impl Fitter<'_> {
         let size = |factors: DVec3| scale * factors.map(f64::exp);
         let error = |sample: &Sample, factors: DVec3| {
             let variant = self.with(|w| w.reshape(sphere, center, size(factors)));
-            self.case.score(&variant, sample).error
+            self.case.error(&variant, sample)
         };
         let steps = [-0.7, -0.4, -0.2, -0.1, -0.05, 0.05, 0.1, 0.2, 0.4, 0.7];
         let mut starts = vec![DVec3::ZERO];
@@ -288,7 +291,7 @@ impl Fitter<'_> {
         let now = self.base.world.lights[light].position;
         let error = |sample: &Sample, shift: DVec3| {
             let variant = self.with(|w| w.lights[light].position = now + shift);
-            self.case.score(&variant, sample).error
+            self.case.error(&variant, sample)
         };
         let bodies = &self.base.world.bodies;
         let middle = bodies.iter().map(|body| body.shape.center).sum::<DVec3>() / bodies.len().max(1) as f64;

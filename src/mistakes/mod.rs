@@ -6,6 +6,7 @@
 mod case;
 mod catalogue;
 mod fit;
+mod limit;
 mod rules;
 mod search;
 mod simplex;
@@ -13,6 +14,8 @@ mod textbook;
 mod tree;
 mod variant;
 mod world;
+
+use std::time::Duration;
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -23,6 +26,7 @@ use crate::viewed::ViewedScene;
 use crate::words::count;
 use case::{Case, Sample};
 use catalogue::{Right, Way, ways};
+use limit::Limit;
 use search::{Part, search};
 use variant::{Stage, Variant};
 
@@ -32,6 +36,9 @@ pub use catalogue::{CAUSES, Known};
 const LEAST_ROUNDED: usize = 3;
 /// Causes that are listed besides those that explain the picture.
 const OTHERS: usize = 3;
+
+/// What is said of a search that did not come to its end.
+pub(crate) const CUT_SHORT: &str = "the time for the search was over before all causes were tried";
 
 /// What explains a picture that is not the reference's.
 ///
@@ -44,6 +51,8 @@ pub struct Diagnosis {
     pub to_explain: u64,
     /// Pixels that differ from a picture with the causes whose role is [`Role::Cause`].
     pub left: u64,
+    /// Whether the time was over before all causes were tried: these are the best until then.
+    pub cut_short: bool,
 }
 
 /// A known cause, as it shows in a picture.
@@ -89,14 +98,16 @@ pub struct Example {
 }
 
 /// Explains `picture`, which somebody has of `viewed`, beside `expected`, the reference's picture of the same size; `unexplained` are the
-/// pixels, by column and row, that rounding does not explain.
+/// pixels, by column and row, that rounding does not explain. The search takes no longer than `time`.
 pub fn diagnose(
     picture: &Picture,
     expected: &Picture,
     viewed: &ViewedScene,
     effects: &Effects,
     unexplained: &[[u32; 2]],
+    time: Option<Duration>,
 ) -> Diagnosis {
+    let limit = Limit::new(time);
     if is_plain(picture) {
         return Diagnosis::nothing(unexplained.len());
     }
@@ -105,7 +116,7 @@ pub fn diagnose(
     let pixels = all_pixels(picture);
     let differs = |&[i, j]: &[u32; 2]| picture.pixel(i, j) != expected.pixel(i, j);
     // The small renderer has no say where it is not the reference.
-    let is_right = |&[i, j]: &[u32; 2]| right.shows(&stage, [i, j], expected.pixel(i, j), true);
+    let is_right = |&[i, j]: &[u32; 2]| !limit.is_over() && right.shows(&stage, [i, j], expected.pixel(i, j), true);
     let is_near = |&[i, j]: &[u32; 2]| right.shows(&stage, [i, j], picture.pixel(i, j), false);
     let equal: Vec<_> = pixels.par_iter().copied().filter(|pixel| !differs(pixel) && is_right(pixel)).collect();
     let far = unexplained.par_iter().copied().filter(|pixel| is_right(pixel) && !is_near(pixel));
@@ -114,26 +125,30 @@ pub fn diagnose(
     let exactly = differing.is_empty();
     if exactly {
         differing = pixels.par_iter().copied().filter(|pixel| differs(pixel) && is_right(pixel)).collect();
-        if differing.len() < LEAST_ROUNDED {
+        if differing.len() < LEAST_ROUNDED && !limit.has_cut() {
             return Diagnosis::nothing(unexplained.len());
         }
     }
-    let case = Case { stage, theirs: picture, all: Sample { differing, equal }, exactly };
-    let found = diagnosed(&case, viewed, &right, None);
-    found.unwrap_or_else(|| Diagnosis::nothing(if exactly { unexplained.len() } else { case.all.differing.len() }))
+    if limit.has_cut() {
+        return Diagnosis { cut_short: true, ..Diagnosis::nothing(unexplained.len()) };
+    }
+    let case = Case { stage, theirs: picture, all: Sample { differing, equal }, exactly, limit };
+    let pixels = if exactly { unexplained.len() } else { case.all.differing.len() };
+    diagnosed(&case, (viewed, effects), &right, None, pixels)
 }
 
 /// Explains why `picture`, which somebody has of `viewed`, has another size than the scene's: all of its pixels are to be explained.
-pub fn diagnose_size(picture: &Picture, viewed: &ViewedScene, effects: &Effects) -> Diagnosis {
+/// The search takes no longer than `time`.
+pub fn diagnose_size(picture: &Picture, viewed: &ViewedScene, effects: &Effects, time: Option<Duration>) -> Diagnosis {
+    let limit = Limit::new(time);
     if is_plain(picture) {
         return Diagnosis::nothing(picture.pixels().len());
     }
     let right = Variant::new(viewed, effects);
     let shown = [picture.width(), picture.height()];
     let all = Sample { differing: all_pixels(picture), equal: Vec::new() };
-    let case = Case { stage: Stage::new(viewed, shown), theirs: picture, all, exactly: false };
-    let found = diagnosed(&case, viewed, &right, Some(shown));
-    found.unwrap_or_else(|| Diagnosis::nothing(case.all.differing.len()))
+    let case = Case { stage: Stage::new(viewed, shown), theirs: picture, all, exactly: false, limit };
+    diagnosed(&case, (viewed, effects), &right, Some(shown), case.all.differing.len())
 }
 
 /// Whether a picture is of one colour all over, which says nothing of how it came about.
@@ -147,9 +162,19 @@ fn all_pixels(picture: &Picture) -> Vec<[u32; 2]> {
     (0..height).flat_map(|j| (0..width).map(move |i| [i, j])).collect()
 }
 
-fn diagnosed(case: &Case, viewed: &ViewedScene, right: &Variant, other_size: Option<[u32; 2]>) -> Option<Diagnosis> {
+/// What the search finds; where that is nothing, so many pixels are left.
+fn diagnosed(
+    case: &Case,
+    (viewed, effects): (&ViewedScene, &Effects),
+    right: &Variant,
+    other_size: Option<[u32; 2]>,
+    pixels: usize,
+) -> Diagnosis {
     let (unit, scene) = (case.stage.unit, viewed.in_file().0);
-    let found = search(case, &Right { scene, variant: right, other_size, unit })?;
+    let left_out = Variant::with_left_out(viewed, effects);
+    let found = search(case, &Right { scene, variant: right, left_out: &left_out, other_size, unit });
+    let cut_short = case.limit.has_cut();
+    let Some(found) = found else { return Diagnosis { cut_short, ..Diagnosis::nothing(pixels) } };
     let cause = |part: Part, role| Cause {
         name: part.name,
         share: part.share,
@@ -163,7 +188,7 @@ fn diagnosed(case: &Case, viewed: &ViewedScene, right: &Variant, other_size: Opt
         let role = if part.is_equal { Role::Equal } else { Role::Lesser };
         cause(part, role)
     }));
-    Some(Diagnosis { causes, to_explain: case.before(), left: found.left.round() as u64 })
+    Diagnosis { causes, to_explain: case.before(), left: found.left.round() as u64, cut_short }
 }
 
 /// The ways in which the causes that need no fitting change the picture of `viewed`: name and detail of each.
@@ -189,7 +214,9 @@ pub fn planted(viewed: &ViewedScene, effects: &Effects, chosen: &[usize]) -> Pic
 
 fn with_ways<T>(viewed: &ViewedScene, effects: &Effects, use_them: impl FnOnce(&Variant, Vec<Way>) -> T) -> T {
     let right = Variant::new(viewed, effects);
-    let known = Right { scene: viewed.in_file().0, variant: &right, other_size: None, unit: viewed.factor() };
+    let left_out = Variant::with_left_out(viewed, effects);
+    let (scene, unit) = (viewed.in_file().0, viewed.factor());
+    let known = Right { scene, variant: &right, left_out: &left_out, other_size: None, unit };
     use_them(&right, ways(&known))
 }
 
@@ -218,18 +245,15 @@ fn examples(case: &Case, right: &Variant, variant: &Variant) -> Vec<Example> {
 impl Diagnosis {
     /// Nothing known explains so many pixels.
     fn nothing(pixels: usize) -> Self {
-        Self { causes: Vec::new(), to_explain: pixels as u64, left: pixels as u64 }
+        Self { causes: Vec::new(), to_explain: pixels as u64, left: pixels as u64, cut_short: false }
     }
 
     /// A list for people.
     pub fn report(&self) -> String {
         use std::fmt::Write as _;
-        let Self { causes, to_explain, left } = self;
-        if *to_explain == 0 {
-            return "cause             nothing has to be explained\n".into();
-        }
+        let Self { causes, to_explain, left, cut_short } = self;
         if causes.is_empty() {
-            return format!("cause             nothing known explains the {}\n", count(*to_explain, "pixel"));
+            return format!("cause             {}\n", self.without_causes());
         }
         let mut text = String::new();
         for Cause { name, share, role, detail, examples } in causes {
@@ -245,6 +269,18 @@ impl Diagnosis {
             }
         }
         let _ = writeln!(text, "left              {left} of {}", count(*to_explain, "pixel"));
+        if *cut_short {
+            let _ = writeln!(text, "search            {CUT_SHORT}");
+        }
         text
+    }
+
+    /// Why there are no causes, in words.
+    pub fn without_causes(&self) -> String {
+        match (self.cut_short, count(self.to_explain, "pixel")) {
+            (true, _) => format!("none was found: {CUT_SHORT}"),
+            (_, _) if self.to_explain == 0 => "nothing has to be explained".into(),
+            (_, pixels) => format!("nothing known explains the {pixels}"),
+        }
     }
 }

@@ -117,14 +117,15 @@ pub(super) fn search(case: &Case, right: &Right) -> Option<Found> {
     let alone = known.iter().filter(|way| makes_the_size(right, way.name)).map(|way| vec![way]);
     let mut singles = screened(case, base, alone.collect(), &first);
     sort(&mut singles, before);
-    let finalists = finals(case, base, &singles, &second, &full);
+    let finalists = finals(case, &singles, &second, &full);
     if case.exactly {
-        let exact = finalists.into_iter().filter(|h| h.score.left == 0.0).collect();
+        // Of a part of the pixels nothing follows for all.
+        let exact = finalists.into_iter().filter(|h| h.score.left == 0.0 && !case.limit.has_cut()).collect();
         return found(case, base, &full, exact);
     }
     let explains =
         |finalists: &[Hypothesis]| finalists.first().is_some_and(|best| best.score.left <= (before * GOOD).max(1.0));
-    if explains(&finalists) || singles.is_empty() {
+    if explains(&finalists) || singles.is_empty() || case.limit.is_over() {
         return found(case, base, &full, finalists);
     }
     let fewer = case.sample(((FIT_SECONDS / seconds) as usize).clamp(FIT[1], FIT[0]));
@@ -134,9 +135,9 @@ pub(super) fn search(case: &Case, right: &Right) -> Option<Found> {
     let specks = specks();
     singles.extend(screened(case, base, if fits_alone { vec![vec![&specks]] } else { Vec::new() }, &first));
     sort(&mut singles, before);
-    let mut finalists = finals(case, base, &singles, &second, &full);
+    let mut finalists = finals(case, &singles, &second, &full);
     let best = finalists.first().map_or(before, |best| best.score.left);
-    if explains(&finalists) {
+    if explains(&finalists) || case.limit.is_over() {
         return found(case, base, &full, finalists);
     }
 
@@ -176,7 +177,7 @@ pub(super) fn search(case: &Case, right: &Right) -> Option<Found> {
         pairs.extend(screened(case, base, specs, &first));
     }
     sort(&mut pairs, before);
-    let pairs = finals(case, base, &pairs, &second, &full);
+    let pairs = finals(case, &pairs, &second, &full);
     if let Some(pair) = pairs.first()
         && pair.handicapped(before) < PAIR_LEAVES * best
         && best - pair.score.left >= 3.0
@@ -190,22 +191,22 @@ pub(super) fn search(case: &Case, right: &Right) -> Option<Found> {
 fn seconds_a_pixel(case: &Case, right: &Variant) -> f64 {
     let sample = case.sample(100);
     let start = Instant::now();
-    case.score(right, &sample);
+    _ = case.score(right, &sample);
     let pixels = sample.differing.len() + sample.equal.len();
     (start.elapsed().as_secs_f64() / pixels.max(1) as f64).max(2e-7)
 }
 
-/// The scores of combinations of causes on a sample.
+/// The scores of combinations of causes on a sample, as many as there is time for.
 fn screened<'w>(case: &Case, right: &Variant, specs: Vec<Vec<&'w Way>>, sample: &Sample) -> Vec<Hypothesis<'w>> {
     let each = |ways: Vec<&'w Way>| {
         let mut variant = right.clone();
         for way in &ways {
             (way.apply)(&mut variant);
         }
-        let score = case.score(&variant, sample);
-        Hypothesis { ways, variant, score }
+        let score = case.score(&variant, sample)?;
+        Some(Hypothesis { ways, variant, score })
     };
-    specs.into_par_iter().map(each).collect()
+    specs.into_par_iter().filter_map(each).collect()
 }
 
 fn sort(hypotheses: &mut [Hypothesis], before: f64) {
@@ -216,21 +217,17 @@ fn sort(hypotheses: &mut [Hypothesis], before: f64) {
     });
 }
 
-/// The best of the hypotheses, by their scores on all pixels.
-fn finals<'w>(
-    case: &Case,
-    right: &Variant,
-    hypotheses: &[Hypothesis<'w>],
-    second: &Sample,
-    full: &Sample,
-) -> Vec<Hypothesis<'w>> {
+/// The best of the hypotheses, by their scores on all pixels or, where there is no time for that, by those that they have.
+fn finals<'w>(case: &Case, hypotheses: &[Hypothesis<'w>], second: &Sample, full: &Sample) -> Vec<Hypothesis<'w>> {
     let before = case.before() as f64;
-    let contenders = hypotheses.iter().take(CONTENDERS).map(|hypothesis| hypothesis.ways.clone()).collect();
-    let mut contenders = screened(case, right, contenders, second);
+    let mut contenders: Vec<_> = hypotheses.iter().take(CONTENDERS).cloned().collect();
+    contenders.par_iter_mut().for_each(|contender| {
+        contender.score = case.score(&contender.variant, second).unwrap_or(contender.score);
+    });
     sort(&mut contenders, before);
     contenders.truncate(FINALISTS);
     for finalist in &mut contenders {
-        finalist.score = case.score_in_parallel(&finalist.variant, full);
+        finalist.score = case.score_in_parallel(&finalist.variant, full).unwrap_or(finalist.score);
     }
     sort(&mut contenders, before);
     contenders
@@ -261,7 +258,7 @@ fn makes_the_size(right: &Right, name: &str) -> bool {
     let [width, height] = right.variant.size;
     right.other_size.is_none_or(|shown| match name {
         "size-off-by-one" => true,
-        "transposed" | "rotated-90" | "written-by-columns" => shown == [height, width],
+        "size-swapped" | "transposed" | "rotated-90" | "written-by-columns" => shown == [height, width],
         _ => false,
     })
 }
@@ -305,7 +302,8 @@ fn found(case: &Case, right: &Variant, full: &Sample, hypotheses: Vec<Hypothesis
     let without = |index: usize| {
         let mut variant = right.clone();
         best.ways.iter().enumerate().filter(|(at, _)| *at != index).for_each(|(_, way)| (way.apply)(&mut variant));
-        case.score_in_parallel(&variant, full).left
+        let score = case.score_in_parallel(&variant, full).or_else(|| case.rough_score(&variant));
+        score.map_or(left, |score| score.left)
     };
     let part = |way: &Way, share: f64, is_equal: bool, variant: &Variant| Part {
         name: way.name,

@@ -11,7 +11,7 @@ use super::rules::{
 use super::textbook::Textbook;
 use super::world::World;
 use crate::camera::Camera;
-use crate::effects::{Effect, Effects};
+use crate::effects::{Effect, EffectSet, Effects};
 use crate::viewed::ViewedScene;
 
 /// How far a renderer's colours may be off that calculates in `f32`.
@@ -277,6 +277,33 @@ impl Variant {
         let scene = viewed.scene();
         let world = Arc::new(World::new(viewed, &simulated));
         Self { world, rules, encoding, layout: Layout::PLAIN, size: [scene.width, scene.height], specks: false }
+    }
+
+    /// The right pictures of `viewed` with effects that it needs and `effects` leave out: each of them alone and, if there are several,
+    /// all; with their names.
+    pub(super) fn with_left_out(viewed: &ViewedScene, effects: &Effects) -> Vec<(String, Self)> {
+        let needed = Effects::of(viewed);
+        let left_out: EffectSet = needed.set.iter().filter(|&effect| !effects.set.has(effect)).collect();
+        let mut sets: Vec<EffectSet> = left_out.iter().map(|effect| EffectSet::NONE.with(effect, true)).collect();
+        if sets.len() > 1 {
+            sets.push(left_out);
+        }
+        let with = |set: EffectSet| {
+            let mut with = effects.clone();
+            with.set = with.set.iter().chain(set.iter()).collect();
+            if set.has(Effect::Reflections) || set.has(Effect::Refraction) {
+                with.depth = needed.depth;
+            }
+            (set.to_string(), Self::new(viewed, &with))
+        };
+        sets.into_iter().map(with).collect()
+    }
+
+    /// Simulates what `whole` simulates.
+    pub(super) fn simulate(&mut self, whole: &Self) {
+        let Rules { near, far_root, shadow, depth, .. } = whole.rules;
+        self.world = Arc::clone(&whole.world);
+        self.rules = Rules { near, far_root, shadow, depth, ..self.rules };
     }
 
     fn textbook<'a>(&'a self, stage: &Stage) -> Textbook<'a> {

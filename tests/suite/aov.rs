@@ -246,6 +246,28 @@ fn one_file_can_have_any_name_and_the_rest_is_refused() {
     }
 }
 
+#[test]
+fn beside_a_picture_that_the_scene_names_only_pictures_are_replaced() {
+    let place = Folder::new(&format!("{SCENE}OUTPUT out.ppm\n"));
+    for (name, arguments) in
+        [("out.t.png", "--aov t"), ("out.t.pfm", "--aov t"), ("out.aov.exr", "--aov t --aov-format exr")]
+    {
+        let run = |options: &str| place.run(&format!("render --device cpu scene.txt {arguments} {options}"));
+        fs::write(place.path(name), "mine").unwrap();
+        for options in ["", "-o ."] {
+            assert_exit(&run(options), 6, &format!("--aov would write `{name}`, over a file that does not begin like"));
+            assert_eq!(fs::read(place.path(name)).unwrap(), b"mine");
+        }
+        assert_exit(&run("-o out.ppm"), 0, "");
+        // Those of a former run are replaced, empty files are as well, and whatever the option allows.
+        assert_exit(&run(""), 0, "");
+        fs::write(place.path(name), "").unwrap();
+        assert_exit(&run(""), 0, "");
+        fs::write(place.path(name), "mine").unwrap();
+        assert_exit(&run("--allow-any-output"), 0, "");
+    }
+}
+
 /// Of a device: its levels less the reference's.
 #[test]
 fn errors_are_those_of_the_devices_picture() {

@@ -1,6 +1,7 @@
 //! `compare --explain`: pictures with planted mistakes, and what is named.
 
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use tempfile::tempdir;
 use trueray::DVec3;
@@ -46,12 +47,16 @@ impl Case {
     }
 
     fn diagnosis(&self, theirs: &Picture) -> Diagnosis {
+        self.diagnosis_within(theirs, None)
+    }
+
+    fn diagnosis_within(&self, theirs: &Picture, time: Option<Duration>) -> Diagnosis {
         let viewed = self.scene.viewed(&self.settings);
         let effects = Effects::of(&viewed);
         let reference = Reference::new(&viewed, &effects);
         let expected = picture(&reference);
         let explanation = Explanation::of(theirs, &expected, &reference, &Judge::of(Tier::Fast));
-        diagnose(theirs, &expected, &viewed, &effects, &explanation.places)
+        diagnose(theirs, &expected, &viewed, &effects, &explanation.places, time)
     }
 
     /// The picture with the ways of these numbers.
@@ -263,12 +268,89 @@ fn other_sizes_are_explained() {
     let right = case.right();
     let without_a_row =
         Picture::new(right.width(), right.height() - 1, right.rgb()[right.width() as usize * 3..].to_vec());
-    let found = diagnose_size(&without_a_row.unwrap(), &viewed, &effects);
+    let found = diagnose_size(&without_a_row.unwrap(), &viewed, &effects, None);
     assert_eq!((names(&found)[0], found.left), ("size-off-by-one", 0));
     let transposed = (0..right.width()).flat_map(|y| (0..right.height()).map(move |x| (x, y)));
     let rgb = transposed.flat_map(|(x, y)| right.pixel(y, x)).collect();
-    let found = diagnose_size(&Picture::new(right.height(), right.width(), rgb).unwrap(), &viewed, &effects);
+    let found = diagnose_size(&Picture::new(right.height(), right.width(), rgb).unwrap(), &viewed, &effects, None);
     assert_eq!((names(&found)[0], found.left), ("transposed", 0));
+    // Much of the background is there, however a picture is turned.
+    let mut lonely = case.scene.clone();
+    lonely.spheres.truncate(1);
+    (lonely.spheres[0].center, lonely.spheres[0].scale) = (DVec3::new(0.5, 0.2, -4.0), DVec3::splat(0.4));
+    (lonely.width, lonely.height) = (72, 48);
+    let mut swapped = lonely.clone();
+    (swapped.width, swapped.height) = (48, 72);
+    let viewed = lonely.viewed(&case.settings);
+    let theirs = Case::rendered(&swapped, &case.settings);
+    let found = diagnose_size(&theirs, &viewed, &Effects::of(&viewed), None);
+    assert_eq!((names(&found)[0], found.left), ("size-swapped", 0));
+}
+
+#[test]
+fn effects_that_are_left_out_are_not_blamed_on_the_picture() {
+    let case = Case::classic("effects/everything.txt");
+    let viewed = case.scene.viewed(&case.settings);
+    for (request, left_out) in
+        [("-shadows", "shadows"), ("-reflections", "reflections"), ("-specular,-shadows", "specular,shadows")]
+    {
+        let effects = Effects::requested(&viewed, &request.parse().unwrap());
+        let reference = Reference::new(&viewed, &effects);
+        let (theirs, expected) = (case.right(), picture(&reference));
+        let explanation = Explanation::of(&theirs, &expected, &reference, &Judge::of(Tier::Fast));
+        let found = diagnose(&theirs, &expected, &viewed, &effects, &explanation.places, None);
+        assert_eq!((names(&found)[0], found.left), ("effects-left-out", 0), "{request}: {found:?}");
+        assert!(found.causes[0].detail.ends_with(&format!("({left_out})")), "{request}: {found:?}");
+        // A picture without them has no cause.
+        let found = diagnose(&expected, &expected, &viewed, &effects, &[], None);
+        assert_eq!(found.causes, [], "{request}");
+    }
+}
+
+#[test]
+fn a_search_ends_when_its_time_is_over() {
+    let case = Case::classic("effects/everything.txt");
+    // Of noise no cause is good enough, so that all are tried.
+    let noise = |x: u32, y: u32| [0, 1, 2].map(|c| (x * 83 + y * 57 + c * 31 + x * y * 7).wrapping_mul(97) as u8);
+    let right = case.right();
+    let (width, height) = (right.width(), right.height());
+    let rgb = (0..width * height).flat_map(|at| noise(at % width, at / width)).collect();
+    let theirs = Picture::new(width, height, rgb).unwrap();
+    let start = Instant::now();
+    assert!(!case.diagnosis(&theirs).cut_short);
+    let whole = start.elapsed();
+    let start = Instant::now();
+    assert!(case.diagnosis_within(&theirs, Some(whole / 10)).cut_short);
+    assert!(start.elapsed() < whole / 2, "{:?} of {whole:?}", start.elapsed());
+    let none = case.diagnosis_within(&theirs, Some(Duration::ZERO));
+    assert!(none.cut_short && none.causes.is_empty() && none.report().contains("the time for the search was over"));
+    // A time that is long enough changes nothing.
+    let blinn = Case {
+        settings: Settings { specular: Specular::Blinn, ..case.settings },
+        ..Case::classic("effects/everything.txt")
+    };
+    let theirs = blinn.right();
+    assert_eq!(case.diagnosis_within(&theirs, Some(Duration::MAX)), case.diagnosis(&theirs));
+}
+
+#[test]
+fn what_was_found_in_time_is_named() {
+    let mut case = Case::classic("effects/everything.txt");
+    (case.scene.width, case.scene.height) = (36, 36);
+    let settings = Settings { specular: Specular::Blinn, quantize: Quantize::Round, ..case.settings };
+    let mut scene = case.scene.clone();
+    scene.lights[0].intensity *= 0.8;
+    let theirs = Case::rendered(&scene, &settings);
+    // Twice as long until something is found, and as soon as something is, that is named.
+    let mut time = Duration::from_millis(1);
+    let found = loop {
+        let found = case.diagnosis_within(&theirs, Some(time));
+        if !found.causes.is_empty() || !found.cut_short {
+            break found;
+        }
+        time *= 2;
+    };
+    assert!(!found.causes.is_empty() && found.left < found.to_explain, "{found:?}");
 }
 
 #[test]
@@ -301,6 +383,10 @@ fn the_command_names_the_mistake() {
     let json: serde_json::Value = serde_json::from_str(&text).unwrap();
     assert_eq!((&json["causes"][0]["name"], &json["causes"][0]["share"]), (&"specular-blinn".into(), &1.0.into()));
     assert_eq!(json["left"], 0);
+    assert_eq!(json["cut_short"], false);
+    let (_, text) = trueray(&[&compare[..], &[&res, "--explain-seconds", "0", "--json"]].concat(), folder.path());
+    let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!((&json["causes"], &json["cut_short"]), (&serde_json::json!([]), &true.into()));
     // Another size is trouble, and said to be what it is.
     let (code, text) = trueray(&[&compare[..], &["10x10", "--json"]].concat(), folder.path());
     let json: serde_json::Value = serde_json::from_str(&text).unwrap();

@@ -507,6 +507,26 @@ fn interrupted_measurements_are_written() {
     assert!(fs::read_to_string(place.path("s.html")).unwrap().ends_with("</html>"));
     assert!(place.files().iter().all(|name| !name.contains(".trueray-")));
 
+    // Of the first scene at least one picture is graded, the second takes for ever.
+    for folder in ["scenes", "theirs"] {
+        fs::create_dir(place.path(folder)).unwrap();
+    }
+    place.scene("scenes/a.txt", "RES 16 8");
+    place.scene("scenes/b.txt", "RES 9000 9000");
+    place.run("render -q --device cpu scenes/a.txt -o a.ppm", 0, "");
+    for student in ["ann", "bob"] {
+        fs::create_dir(place.path(&format!("theirs/{student}"))).unwrap();
+        fs::copy(place.path("a.ppm"), place.path(&format!("theirs/{student}/a.ppm"))).unwrap();
+    }
+    let grade = "grade --device cpu --scenes scenes --theirs theirs --html g.html --csv g.csv --json g.json";
+    let pages = |printed: &Path| fs::read_dir(printed.with_file_name("g_files")).is_ok_and(|pages| pages.count() == 2);
+    let output = interrupted(&place, grade, pages);
+    assert!(String::from_utf8_lossy(&output.stderr).contains("interrupted; what was graded is written"));
+    let json: serde_json::Value = serde_json::from_slice(&place.read("g.json")).unwrap();
+    assert_eq!((&json["interrupted"], &json["rows"][0]["score"]), (&true.into(), &100.into()));
+    assert!(fs::read_to_string(place.path("g.html")).unwrap().contains("Interrupted: not all"));
+    assert!(fs::read_to_string(place.path("g.csv")).unwrap().lines().count() >= 2);
+
     if gpu("interrupted_measurements_are_written").is_some() {
         let json =
             place.run("stress --count 64 --class far --precision fast --json --progress json", 0, "\"finished\":true");

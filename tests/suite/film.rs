@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use proptest::prelude::*;
 use tempfile::TempDir;
 use trueray::film::{
-    Encoded, Format, Leniency, Picture, PictureError, PictureWriter, Problem, Reading, Target, Warning, decode,
-    read_picture,
+    Encoded, Format, Leniency, Picture, PictureError, PictureWriter, Problem, Reading, RowReader, Target, Warning,
+    decode, read_picture,
 };
 
 /// A picture with all 256 sample values where it is large enough.
@@ -641,6 +641,29 @@ fn trailing_data() {
     let (samples, warnings) = mended(binary);
     assert_eq!(samples, b"abc");
     assert_eq!(warnings, ["data after the last sample, ignored: 2 bytes"]);
+}
+
+#[test]
+fn pixel_data_beyond_the_picture_of_a_png() {
+    let surplus = "the PNG has more pixel data than its picture";
+    // A filter's byte and three samples.
+    let (row, more, header) = ([0, 1, 2, 3], [0, 1, 2, 3, 0], header(1, 1, 8, 2, false));
+    let png = |parts: &[&[u8]]| {
+        let mut chunks: Vec<(&[u8; 4], &[u8])> = vec![(b"IHDR", &header)];
+        chunks.extend(parts.iter().map(|part| (b"IDAT", *part)));
+        png_of(&[&chunks[..], &[(b"IEND", b"")]].concat())
+    };
+    let stream = stored(&row);
+    assert_eq!(strict(png(&[&stream])).unwrap().picture.into_rgb(), [1, 2, 3]);
+    // Split anywhere, also into chunks of nothing.
+    assert_eq!(strict(png(&[b"", &stream[..5], b"", &stream[5..], b""])).unwrap().picture.into_rgb(), [1, 2, 3]);
+    for wrong in [png(&[&stored(&more)]), png(&[&stream, b"x"]), png(&[&[&stream[..], b"x"].concat()])] {
+        assert_eq!(refusal(wrong.clone()), surplus);
+        assert_eq!(mended(&wrong), (vec![1, 2, 3], vec![format!("{surplus}, ignored")]));
+        let (_folder, path) = in_folder("picture.png");
+        fs::write(&path, wrong).unwrap();
+        assert!(RowReader::open(&path).unwrap().check().unwrap_err().to_string().ends_with(surplus));
+    }
 }
 
 #[test]

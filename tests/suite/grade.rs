@@ -230,6 +230,7 @@ fn whatever_is_handed_in_has_its_row() {
     let names: Vec<_> = rows[3].as_object().unwrap().keys().map(String::as_str).collect();
     let expected = [
         "causes",
+        "cut_short",
         "detail",
         "differing",
         "explained",
@@ -255,6 +256,73 @@ fn whatever_is_handed_in_has_its_row() {
     for name in expected.iter().chain(&COLUMNS) {
         assert!(documented.contains(&format!("`{name}`")), "{name} is in src/cli/README.md");
     }
+}
+
+/// File systems that take names for UTF-8 alone have no such folders.
+#[cfg(target_os = "linux")]
+#[test]
+fn students_whose_names_look_alike_are_kept_apart() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    let folder = place(SCENE);
+    let right = rendered(&folder, &Settings::classic());
+    let students = [&b"ann\xff"[..], b"ann\xfe", b"a\xcc\x81nn", b"tab\x01", "tab\u{2401}".as_bytes()];
+    for student in students {
+        let own = folder.path().join("theirs").join(OsStr::from_bytes(student));
+        fs::create_dir(&own).unwrap();
+        if student != students[0] {
+            right.write(own.join("ball.ppm")).unwrap();
+        }
+    }
+    let json: Value = serde_json::from_slice(&grade(&folder, "--no-explain --json -").stdout).unwrap();
+    let scores: Vec<_> = json["students"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|one| (one["student"].as_str().unwrap(), &one["score"]))
+        .collect();
+    let (none, full) = (Value::from(0.0), Value::from(100.0));
+    let expected = [
+        ("ann\u{FFFD}", &full),
+        ("ann\u{FFFD} (2)", &none),
+        ("a\u{301}nn", &full),
+        ("tab\u{2401}", &full),
+        ("tab\u{2401} (2)", &full),
+    ];
+    assert_eq!(scores, expected);
+}
+
+#[cfg(unix)]
+#[test]
+fn what_is_no_file_is_said_to_be_what_it_is() {
+    use std::os::unix::fs::symlink;
+    let folder = place(SCENE);
+    let theirs = folder.path().join("theirs");
+    for student in ["device", "folder", "link", "pipe", "socket"] {
+        fs::create_dir(theirs.join(student)).unwrap();
+    }
+    let picture = |student: &str| theirs.join(student).join("ball.ppm");
+    symlink("/dev/zero", picture("device")).unwrap();
+    symlink(folder.path(), picture("folder")).unwrap();
+    symlink("nothing.ppm", picture("link")).unwrap();
+    assert!(Command::new("mkfifo").arg(picture("pipe")).status().unwrap().success());
+    let _socket = std::os::unix::net::UnixListener::bind(picture("socket")).unwrap();
+    let json: Value = serde_json::from_slice(&grade(&folder, "--json -").stdout).unwrap();
+    let rows = json["rows"].as_array().unwrap();
+    let found: Vec<_> = rows.iter().map(|row| row["detail"].as_str().unwrap()).collect();
+    let expected = [
+        "a device, no picture",
+        "a link to a folder, no picture",
+        "a link to a file that is not there",
+        "a pipe, no picture",
+        "a socket, no picture",
+    ];
+    assert_eq!(found, expected);
+    assert!(rows.iter().all(|row| row["verdict"] == "damaged" && row["score"] == 0), "{rows:?}");
+    // A file beside it is graded.
+    rendered(&folder, &Settings::classic()).write(theirs.join("pipe/handed-in.png")).unwrap();
+    let json: Value = serde_json::from_slice(&grade(&folder, "--json -").stdout).unwrap();
+    assert_eq!(json["rows"][3]["verdict"], "same");
 }
 
 #[test]

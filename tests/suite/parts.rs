@@ -337,6 +337,7 @@ fn parts_that_there_are_not_are_refused() {
         ("--crop 4,4,0,1 -o no.png", "the rectangle is empty"),
         ("--crop 4,2,0,1 -o no.png", "the rectangle is empty"),
         ("--crop 4,5 -o no.png", "expected four numbers"),
+        ("--crop -1,5,0,1 -o no.png", "expected four numbers"),
         ("--tile 2/2 -o no.png", "there is no part 2 of 2"),
         ("--tile 0/0 -o no.png", "there is no part 0 of 0"),
         ("--tile 1 -o no.png", "expected two numbers"),

@@ -323,10 +323,12 @@ fn the_table_tells_rays_tests_light_and_colour() {
 #[test]
 fn what_is_no_pixel_is_refused_and_no_device_is_told() {
     let scene = format!("{WINDOW}{MIRROR}");
-    let output = pixel(&scene, "scene.txt 8 0 --device cpu", true);
-    assert_eq!(output.status.code(), Some(2));
-    let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(stderr.contains("there is no pixel 8 0: columns are 0 to 7, rows 0 to 7"), "{stderr}");
+    for place in ["8 0", "0 8", "-1 0", "0 -7", "5000000000 0"] {
+        let output = pixel(&scene, &format!("scene.txt {place} --device cpu"), true);
+        assert_eq!(output.status.code(), Some(2));
+        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(stderr.contains(&format!("there is no pixel {place}: x is from 0 to 7, y from 0 to 7")), "{stderr}");
+    }
     // Each hit of the wall, from within, doubles the rays.
     let room = "SPHERE room 0 0 0 9 9 9 1 1 1 0.1 0 0 1 1 0.5 1\nSPHERE ball 0 0 -3 1 1 1 1 1 1 0.1 0 0 1 1 0.5 1.1\n";
     let output = pixel(&format!("{WINDOW}{room}"), "scene.txt 4 4 --device cpu --max-depth 24", true);

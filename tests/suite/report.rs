@@ -114,6 +114,52 @@ fn differing_pixels_are_counted_by_sphere() {
     assert_eq!((found.counts, found.step), (vec![background, left], 1));
 }
 
+/// The means are those of the authors' program, the package `flip-evaluator` 1.7 of `PyPI`, which calculates in `f32`:
+/// `evaluate(a, b, "LDR", applyMagma=False, parameters={"ppd": 67.0})` of samples in 0..=1.
+#[test]
+fn flip_is_that_of_its_authors() {
+    let noise = |width, height, seed: u32| {
+        picture(width, height, |x, y| {
+            [0, 1, 2].map(|c| (x * 83 + y * 57 + c * 31 + seed * (x * y + 7)).wrapping_mul(97) as u8)
+        })
+    };
+    // Slopes with an edge, and of the second a point and a spot besides.
+    let slopes = |k: u32| {
+        picture(40, 32, |x, y| {
+            let slope = [6 * x + k, 7 * y + 2 * k, 3 * (x + y) + 3 * k].map(|level| level as u8);
+            match (k, x, y) {
+                (0, ..) if x < 20 => slope,
+                (0, ..) => slope.map(|level| 255 - level),
+                (_, 5, 3) => [255; 3],
+                (_, 20..22, 10..14) => [200, 10, 30],
+                _ if x < 20 => slope,
+                _ => slope.map(|level| 255 - level),
+            }
+        })
+    };
+    let flip = |a: &Picture, b: &Picture| metrics(a, b).flip;
+    for (a, b, expected) in [
+        (noise(24, 17, 1), noise(24, 17, 2), 0.447_754_8),
+        (slopes(0), slopes(9), 0.346_821_8),
+        (noise(3, 2, 1), noise(3, 2, 2), 0.859_322_3),
+    ] {
+        let found = flip(&a, &b);
+        assert!((found - expected).abs() < 2e-6, "{found} for {expected}");
+        assert!((flip(&b, &a) - found).abs() < 1e-12);
+        assert_eq!(flip(&a, &a), 0.0);
+    }
+    // Where there is no feature at all, single precision shows some: its root is of the order of 1e-4.
+    let flat = |level| picture(16, 12, |_, _| [level; 3]);
+    assert!((flip(&flat(100), &flat(150)) - 0.463_724_3).abs() < 1e-4);
+    // Rows are calculated in bands, which leave no trace.
+    let (tall, long) = (|seed| noise(9, 150, seed), |seed| noise(150, 9, seed));
+    let turned = |wide: &Picture| picture(9, 150, |x, y| wide.pixel(y, x));
+    assert!((flip(&turned(&long(1)), &turned(&long(2))) - flip(&long(1), &long(2))).abs() < 1e-9);
+    let mut changed = tall(1).into_rgb();
+    changed[3 * 9 * 140] ^= 0xff;
+    assert!(flip(&Picture::new(9, 150, changed).unwrap(), &tall(1)) > 0.0);
+}
+
 /// What stands in quotes after each `src=`.
 fn sources(page: &str) -> Vec<&str> {
     page.split("src=\"").skip(1).map(|rest| rest.split('"').next().unwrap()).collect()
@@ -160,6 +206,7 @@ fn the_page_has_all_its_parts_and_needs_nothing_else() {
         "RMSE",
         "PSNR",
         "SSIM",
+        "FLIP",
         "p95",
         "a&lt;b&gt;.ppm",
         "sphere 'left'",
@@ -181,6 +228,14 @@ fn the_page_has_all_its_parts_and_needs_nothing_else() {
     let (code, page) = run("compare right.png a<b>.ppm --report r.html");
     assert_eq!(code, 1);
     assert!(embedded(sources(&page)[1]) == case.expected && !page.contains("Pixels by sphere"));
+    let json = Command::new(env!("CARGO_BIN_EXE_trueray"))
+        .args(["compare", "right.png", "a<b>.ppm", "--json"])
+        .current_dir(place.path())
+        .output()
+        .unwrap();
+    let json: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    assert_eq!(json["metrics"]["flip"], metrics(&case.expected, &theirs).flip);
+    assert!(json["metrics"]["ssim"].is_number());
     let (code, page) = run("compare right.png right.png --report r.html");
     assert!(code == 0 && page.contains("No pixel differs.") && page.contains("infinite"));
     assert_eq!(run("compare right.png a<b>.ppm --report right.png").0, 2, "an input is not written");

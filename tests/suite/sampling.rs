@@ -272,7 +272,7 @@ fn options_that_make_no_sense_are_refused() {
         ("--foveate here", "expected center, or X,Y in parts"),
         ("--foveate 0.5", "expected center, or X,Y in parts"),
         ("--foveate 0.5,1.5", "expected center, or X,Y in parts"),
-        ("--foveate=-3px,4px", "expected center, or X,Y in parts"),
+        ("--foveate -3px,4px", "expected center, or X,Y in parts"),
         ("--foveate center --sparse 0.1", "cannot be used with"),
         ("--foveate center --density 0", "above 0, up to 1"),
         ("--foveate center --falloff 0", "above 0, up to 100"),
