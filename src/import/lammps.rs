@@ -68,14 +68,15 @@ impl Reader for Lammps {
                     Some(frame) => self.atoms(source, atoms, cell, frame, options, log)?,
                     None => skip(source, atoms, log)?,
                 }
+                source.skip_blank_lines()?;
+                if let Some(line) = source.peek()?.filter(|line| !line.bytes.starts_with(b"ITEM:")) {
+                    return Err(stop(log, whole(line), || no_item(line.bytes.trim_ascii_end())));
+                }
                 return Ok(true);
             } else if item.starts_with(b"ITEM:") {
                 source.demand(log, || Detail::new("the file ends within an item", "expected a value"))?;
             } else {
-                return Err(stop(log, whole(head), || {
-                    Detail::new(format!("`{}` is no item", shown(item)), "expected ITEM: and its name")
-                        .help("a frame may have more atoms than ITEM: NUMBER OF ATOMS says")
-                }));
+                return Err(stop(log, whole(head), || no_item(item)));
             }
         }
     }
@@ -104,7 +105,13 @@ impl Lammps {
                 })?;
             }
         }
-        Ok(Cell::new(bounds, rows))
+        let cell = Cell::new(bounds, rows);
+        if cell.is_usable(bounds) {
+            return Ok(cell);
+        }
+        Err(stop(log, source.end(), || {
+            Detail::new("a box that has no size, or is beyond what a number can hold", "expected upper bounds above the lower ones")
+        }))
     }
 
     fn atoms(
@@ -153,6 +160,14 @@ impl Lammps {
 }
 
 impl Cell {
+    /// Whether every place in it has finite coordinates, and its upper bounds are above the lower ones.
+    fn is_usable(&self, bounds: Bounds) -> bool {
+        let DMat3 { x_axis, y_axis, z_axis } = self.edges;
+        let corner = self.origin + x_axis + y_axis + z_axis;
+        let is_positive = matches!(bounds, Bounds::General) || x_axis.x >= 0.0 && y_axis.y >= 0.0 && z_axis.z >= 0.0;
+        corner.is_finite() && self.origin.is_finite() && self.edges.is_finite() && is_positive
+    }
+
     fn new(bounds: Bounds, rows: [[f64; 4]; 3]) -> Self {
         let [x, y, z] = rows;
         if let Bounds::General = bounds {
@@ -173,6 +188,11 @@ impl Cell {
         );
         Self { origin, edges }
     }
+}
+
+fn no_item(line: &[u8]) -> Detail<'static> {
+    Detail::new(format!("`{}` is no item", shown(line)), "expected ITEM: and its name")
+        .help("a frame may have more atoms than ITEM: NUMBER OF ATOMS says")
 }
 
 /// What the words behind `BOX BOUNDS` say.

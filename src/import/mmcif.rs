@@ -34,7 +34,12 @@ impl Reader for Mmcif {
         let mut model: Option<Vec<u8>> = None;
         let mut columns = None;
         let mut is_begun = false;
-        while let Some(line) = source.peek()?.filter(|line| is_row(line.bytes)) {
+        while let Some(line) = source.peek()?.filter(|line| is_row(line.bytes) || is_empty(line.bytes)) {
+            // Loops may have comments in them.
+            if is_empty(line.bytes) {
+                source.line()?;
+                continue;
+            }
             split_values(line.bytes, &mut self.spans);
             if let (Some(column), true) = (model_column, self.spans.len() == self.names.len()) {
                 let number = line.token(self.spans[column]);
@@ -88,10 +93,10 @@ impl Mmcif {
                         }));
                     }
                     self.names.push(String::from_utf8_lossy(name.trim_ascii()).into_owned());
-                } else if !self.names.is_empty() {
+                } else if !self.names.is_empty() && !is_empty(bytes) {
                     return Ok(true);
                 }
-                let keeps = bytes.starts_with(b"_") || bytes.is_empty() || bytes.starts_with(b"#");
+                let keeps = bytes.starts_with(b"_") || is_empty(bytes);
                 in_loop = bytes.eq_ignore_ascii_case(b"loop_") || in_loop && keeps;
             }
             source.line()?;
@@ -100,11 +105,16 @@ impl Mmcif {
     }
 }
 
+/// Whether a line has nothing but a comment.
+fn is_empty(line: &[u8]) -> bool {
+    matches!(line.trim_ascii_start(), [] | [b'#', ..])
+}
+
 /// Whether a loop goes on with this line.
 fn is_row(line: &[u8]) -> bool {
     let start = line.trim_ascii_start();
     let ends = |word: &[u8]| start.get(..word.len()).is_some_and(|head| head.eq_ignore_ascii_case(word));
-    !(start.is_empty() || start.starts_with(b"#") || start.starts_with(b"_") || ends(b"loop_") || ends(b"data_"))
+    !(is_empty(line) || start.starts_with(b"_") || ends(b"loop_") || ends(b"data_"))
 }
 
 /// The values of a line: words, or text in quotes that end before a blank.

@@ -71,7 +71,12 @@ impl Reader for Pdb {
     ) -> Result<bool, Stop> {
         let mut columns = None;
         let mut is_begun = false;
-        while let Some(line) = source.line()? {
+        loop {
+            // A frame without its end ends before the next one.
+            if is_begun && source.peek()?.is_some_and(|line| record(line.bytes) == b"MODEL") {
+                return Ok(true);
+            }
+            let Some(line) = source.line()? else { break };
             let record = record(line.bytes);
             if !is_atom(record) {
                 if is_begun && (record == b"ENDMDL" || record == b"END") {
