@@ -74,11 +74,14 @@ as_root() {
 
 test_openjd() {
     install_python openjd-cli
+    # Names and options that a shell would read as text of its own.
+    parts="$work/it's; touch $work/broken #" named="$work/a scene's #1.txt"
+    cp "$scene" "$named"
     run() {
-        openjd run farm/openjd.yaml --step Merge --run-dependencies -p "Scene=$scene" -p "Output=$work/picture.png" \
-            -p "Parts=$work/picture.parts" -p "Tiles=$tiles" -p "Options=${options[*]}" -p "Trueray=$TRUERAY" >"$work/log" 2>&1
+        openjd run farm/openjd.yaml --step Merge --run-dependencies -p "Scene=$named" -p "Output=$work/picture.png" \
+            -p "Parts=$parts" -p "Tiles=$tiles" -p "Options=${options[*]}" -p "Trueray=$TRUERAY" >"$work/log" 2>&1
     }
-    mkdir "$work/picture.parts"
+    mkdir -p "$parts"
     run &
     kill -KILL "$(rendering)"
     if wait $!; then
@@ -86,6 +89,7 @@ test_openjd() {
         return 1
     fi
     run || { cat "$work/log" >&2; return 1; }
+    test ! -e "$work/broken"
 }
 
 # What renders a tile on a node of this test, with the daemons that would tell of its end.

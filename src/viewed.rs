@@ -47,7 +47,7 @@ impl Scene {
         }
     }
 
-    /// The same, where other eyes have looked at the same spheres and lights and left their lists in `kept`.
+    /// The same, where other eyes have looked at the same spheres and left their lists in `kept`; lights may have moved.
     #[doc(hidden)]
     pub fn viewed_again<'a>(&'a self, settings: &Settings, kept: &'a KeptLists) -> ViewedScene<'a> {
         let viewed = self.viewed(settings);

@@ -10,6 +10,7 @@ use super::density::Density;
 use super::leaving::Leaving;
 use crate::brightness::Scalar;
 use crate::effects::EffectSet;
+use crate::scene::Light;
 use crate::threads::lock;
 use crate::viewed::ViewedScene;
 
@@ -33,6 +34,8 @@ type Key = (EffectSet, Rounding, Density, f64);
 #[derive(Debug)]
 struct Kept {
     key: Key,
+    /// Where they were, in the file's coordinates.
+    lights: Vec<Light>,
     /// For which eye, in the units of kernels.
     eye: DVec3,
     sizes: Sizes,
@@ -69,7 +72,7 @@ pub(super) fn moved_at_most(moved: f64, magnitude: f64) -> f64 {
 }
 
 impl KeptLists {
-    /// The lists for `viewed`, which is a view of the same scene as ever; `make` makes them with room for other eyes.
+    /// The lists for `viewed`, which is a view of the same spheres as ever, perhaps with other lights; `make` makes them with room for other eyes.
     pub(super) fn of(
         &self,
         viewed: &ViewedScene,
@@ -79,7 +82,9 @@ impl KeptLists {
     ) -> Leaving {
         let eye = viewed.in_file().1.view.eye * viewed.factor();
         let sizes = Sizes::of(enclosure, viewed);
-        if let Some(kept) = lock(&self.0).iter().find(|kept| kept.key == key && kept.sizes.serve(&sizes)) {
+        let lights = &viewed.in_file().0.lights;
+        let serves = |kept: &&Kept| kept.key == key && kept.lights == *lights && kept.sizes.serve(&sizes);
+        if let Some(kept) = lock(&self.0).iter().find(serves) {
             return kept.leaving.moved(kept.eye - eye);
         }
         let leaving = make(&enclosure.for_other_eyes(viewed));
@@ -88,7 +93,7 @@ impl KeptLists {
         if all.len() == MOST {
             all.remove(0);
         }
-        all.push(Kept { key, eye, sizes, leaving: leaving.clone() });
+        all.push(Kept { key, lights: lights.clone(), eye, sizes, leaving: leaving.clone() });
         leaving
     }
 }

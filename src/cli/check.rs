@@ -144,7 +144,7 @@ fn named_doubt(scene: &Scene) -> Option<String> {
 
 pub(super) fn run(args: &Args) -> Result<u8, Failure> {
     let settings = args.picture.settings()?;
-    let reading = args.particles.one_frame(args.picture.resolution())?;
+    let reading = args.particles.one_frame(&args.picture)?;
     let mut summaries = Vec::new();
     let mut code = OK;
     for path in &args.scenes {

@@ -306,7 +306,7 @@ enum Compared {
 
 /// The scene in the size that is asked for.
 fn load(args: &Args, scene: &Path) -> Result<Loaded, Failure> {
-    let input = Input::read(scene, &Reading::usual(args.picture.resolution()))?;
+    let input = Input::read(scene, &Reading::usual(&args.picture)?)?;
     if args.json && input.parsed.scene.is_none() {
         return Err(Failure::new(USAGE, input.parsed.report(false).trim_end()));
     }

@@ -32,7 +32,7 @@ pub(super) struct Args {
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     Guard::new([&args.scene]).options([("--output", &Some(args.output.clone()))])?;
-    let reading = args.particles.one_frame(args.picture.resolution())?;
+    let reading = args.particles.one_frame(&args.picture)?;
     let mut loaded = Loaded::read(&args.scene, &reading, false)?;
     args.picture.frame(&mut loaded.scene)?;
     let (scene, settings) = (&loaded.scene, args.picture.settings()?);

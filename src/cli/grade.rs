@@ -92,7 +92,7 @@ struct Task {
 
 impl Task {
     fn read(args: &Args, file: &Path, settings: &Settings, gpu: Option<&Gpu>) -> Result<Self, Failure> {
-        let Loaded { name, mut scene, .. } = Loaded::read(file, &Reading::usual(args.picture.resolution()), true)?;
+        let Loaded { name, mut scene, .. } = Loaded::read(file, &Reading::usual(&args.picture)?, true)?;
         args.picture.frame(&mut scene)?;
         let viewed = scene.viewed(settings);
         let effects = args.picture.renderable_effects(&viewed).map_err(|failure| failure.of(&name))?;

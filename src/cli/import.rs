@@ -56,10 +56,21 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         return Err(Failure::new(SCENE, format!("{message}\n  {help}")));
     };
     let file = opened.name.clone();
-    for Imported { number, mut parsed, notes } in Import::new(&file, format, opened.into_reader(), reading.options) {
+    let is_one = reading.options.frames.is_one();
+    let mut is_empty = true;
+    for Imported { number, mut parsed, notes, .. } in Import::new(&file, format, opened.into_reader(), reading.options)
+    {
         let scene = parsed.scene.take();
+        let notes: Vec<_> =
+            notes.into_iter().map(|note| if is_one { note } else { format!("frame {number}: {note}") }).collect();
         print_parsed(&parsed, &notes, &file, args.quiet);
-        let Some(scene) = scene else { return Err(Failure::new(SCENE, "")) };
+        let Some(scene) = scene else {
+            if parsed.errors == 0 {
+                continue;
+            }
+            return Err(Failure::new(SCENE, ""));
+        };
+        is_empty = false;
         let path = name.path(number);
         if name.number.is_some() {
             check_place(&path)?;
@@ -69,6 +80,9 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         if !args.quiet && path != Path::new("-") {
             errln!("trueray: {}: frame {number}, {}", path.display(), count(scene.spheres.len() as u64, "sphere"));
         }
+    }
+    if is_empty {
+        return Err(Failure::new(SCENE, format!("{}: no frame has particles", visible(&file))));
     }
     Ok(())
 }

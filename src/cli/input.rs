@@ -10,7 +10,7 @@ use super::color;
 use super::failure::{Failure, SCENE, USAGE};
 use super::output::{err, errln};
 use super::particles::Reading;
-use crate::import::{Format, Import};
+use crate::import::{Format, Import, Lamps};
 use crate::scene::{Parsed, Scene, foreign_kind, parse};
 use crate::words::visible;
 
@@ -76,6 +76,7 @@ pub(super) struct Input {
     /// Reading and parsing.
     pub parse_time: Duration,
     path: Option<PathBuf>,
+    lamps: Option<Lamps>,
     notes: Vec<String>,
 }
 
@@ -86,9 +87,9 @@ impl Input {
         let start = Instant::now();
         let opened = Opened::open(path)?;
         let name = opened.name.clone();
-        let (parsed, notes) = if let Some(format) = opened.format {
+        let (parsed, lamps, notes) = if let Some(format) = opened.format {
             let imported = Import::new(&name, format, opened.into_reader(), reading.options.clone()).first();
-            (imported.parsed, imported.notes)
+            (imported.parsed, imported.lamps, imported.notes)
         } else {
             let text = opened.into_text()?;
             if let Some(kind) = foreign_kind(&text) {
@@ -98,17 +99,20 @@ impl Input {
                 let message = "this holds no particles of a known format, to which options such as --radius apply";
                 return Err(Failure::new(USAGE, format!("{}: {message}", visible(&name))));
             }
-            (parse(&name, &text), Vec::new())
+            (parse(&name, &text), None, Vec::new())
         };
         let path = (path != Path::new("-")).then(|| path.to_owned());
-        Ok(Self { name, parsed, parse_time: start.elapsed(), path, notes })
+        Ok(Self { name, parsed, parse_time: start.elapsed(), path, lamps, notes })
     }
 
     /// Prints errors and warnings and returns the scene, if it can be rendered.
     pub(super) fn into_renderable(self, quiet: bool) -> Result<Loaded, Failure> {
         self.print_diagnostics(quiet);
         match self.parsed.scene {
-            Some(scene) => Ok(Loaded { name: self.name, scene, parse_time: self.parse_time, path: self.path }),
+            Some(scene) => {
+                let Self { name, parse_time, path, lamps, .. } = self;
+                Ok(Loaded { name, scene, lamps, parse_time, path })
+            }
             None => Err(Failure::new(SCENE, "")),
         }
     }
@@ -142,6 +146,8 @@ pub(super) struct Loaded {
     /// The file's name as the user gave it.
     pub name: String,
     pub scene: Scene,
+    /// The lights of particles, which turn with the eye.
+    pub lamps: Option<Lamps>,
     /// Reading and parsing.
     pub parse_time: Duration,
     path: Option<PathBuf>,

@@ -99,8 +99,7 @@ enum Verdict {
 }
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    let mut loaded =
-        Input::read(&args.scene, &Reading::usual(args.picture.resolution()))?.into_renderable(args.json)?;
+    let mut loaded = Input::read(&args.scene, &Reading::usual(&args.picture)?)?.into_renderable(args.json)?;
     args.picture.frame(&mut loaded.scene)?;
     let (scene, settings) = (&loaded.scene, args.picture.settings()?);
     let within = |at: i64, size: u32| u32::try_from(at).ok().filter(|&at| at < size);

@@ -87,7 +87,7 @@ pub(super) struct Args {
     /// which stage; with --precision certified, or of the CPU reference. `trueray verify` reads it
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     certificate: Option<PathBuf>,
-    /// Write when each step of the run began and ended, on which thread: a trace for ui.perfetto.dev or chrome://tracing
+    /// Write when each step of the run began and ended, on which thread: a trace for ui.perfetto.dev or `chrome://tracing`
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     timeline: Option<PathBuf>,
     /// Leave the rays out of the statistics: counting them takes time of its own
@@ -126,7 +126,7 @@ fn render_all(args: &Args) -> Result<u8, Failure> {
     check_certificate(args)?;
     args.part.check(args.scenes.len(), args.output.as_deref())?;
     let settings = args.picture.settings()?;
-    let reading = args.particles.one_frame(args.picture.resolution())?;
+    let reading = args.particles.one_frame(&args.picture)?;
     let mut guard = Guard::new(&args.scenes);
     guard.options([("--certificate", &args.certificate), ("--timeline", &args.timeline)])?;
     let timeline = args.timeline.as_deref().map(Timeline::begin);
@@ -287,8 +287,7 @@ fn render_one(
     };
     let mut certificate = CertificateFile::new(args.certificate.as_deref(), scene);
     // The renderer has what it needs: the spheres go before paths and pixels take memory.
-    let (width, height) = area.size();
-    let (spheres, lights) = (scene.spheres.len(), scene.lights.len());
+    let ((width, height), spheres, lights) = (area.size(), scene.spheres.len(), scene.lights.len());
     let levels = (settings.quantize, scene.background);
     drop(loaded.scene);
 
@@ -306,8 +305,7 @@ fn render_one(
             writer.write(&picture.rgb, &[])?;
             beside.add(&picture.rgb);
             write_time += start.elapsed();
-            let pixels = samples.pixels().len() as u64;
-            sampled = Some(Sampled { density, fill, pixels, fill_ms: picture.fill_ms });
+            sampled = Some(Sampled { density, fill, pixels: samples.pixels().len() as u64, fill_ms: picture.fill_ms });
             picture.not_finite
         }
         Renderer::Whole(engine) => render_bands(engine, |band| {

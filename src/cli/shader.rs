@@ -36,7 +36,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         return Err(Failure::new(USAGE, "the CPU reference runs no shader: `--device cpu` has none to print"));
     }
     let settings = args.picture.settings()?;
-    let mut loaded = Loaded::read(&args.scene, &Reading::usual(args.picture.resolution()), false)?;
+    let mut loaded = Loaded::read(&args.scene, &Reading::usual(&args.picture)?, false)?;
     args.picture.frame(&mut loaded.scene)?;
     let scene = &loaded.scene;
     let is_in_part = args.sampling.choice((scene.width, scene.height))?.is_some();

@@ -77,7 +77,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     say_last(move || lock(&last).interrupted());
     let parts = args.scenes.len() as f64;
     for (number, path) in args.scenes.iter().enumerate() {
-        let mut loaded = Loaded::read(path, &Reading::usual(args.picture.resolution()), false)?;
+        let mut loaded = Loaded::read(path, &Reading::usual(&args.picture)?, false)?;
         args.picture.frame(&mut loaded.scene)?;
         let scene = &loaded.scene;
         let deepest = plan.depths.iter().copied().fold(settings.max_depth, u32::max);

@@ -96,7 +96,7 @@ pub(super) fn run(args: &Args) -> u8 {
 }
 
 fn verify(args: &Args) -> Result<u8, Failure> {
-    let input = Input::read(&args.scene, &Reading::usual(args.options.resolution()))?;
+    let input = Input::read(&args.scene, &Reading::usual(&args.options)?)?;
     if args.json && input.parsed.scene.is_none() {
         return Err(Failure::new(USAGE, input.parsed.report(false).trim_end()));
     }

@@ -39,7 +39,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         return Err(Failure::new(USAGE, "a scene that is to be watched must be a file"));
     }
     args.picture.settings()?;
-    let reading = args.particles.one_frame(args.picture.resolution())?;
+    let reading = args.particles.one_frame(&args.picture)?;
     if is_alone() {
         return Err(Failure::new(
             NO_THREAD,

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::options::Framing;
 use crate::scene::Window;
 
 /// Half the angle of view across the shorter side of the picture, in degrees.
@@ -21,20 +22,31 @@ pub(super) struct Camera {
 }
 
 impl Camera {
-    /// The nearest eye that sees all spheres, each a centre and a radius, within [`FILLED`] of the window. They touch that frame on two
-    /// opposite sides.
-    ///
-    /// A sphere is to one side of a plane through the eye exactly if the eye is far enough along the plane's normal, so each of the
-    /// four planes of the frame asks for its greatest distance, and two opposite ones together for the eye's.
+    /// The nearest eye that sees all spheres, each a centre and a radius, within [`FILLED`] of the window, or the ball around all of
+    /// them. What is seen touches that frame on two opposite sides.
     pub(super) fn fit(
         spheres: impl Iterator<Item = (DVec3, f64)> + Clone,
+        axes: [DVec3; 3],
+        size: (u32, u32),
+        framing: Framing,
+    ) -> Self {
+        let turned = spheres.map(|(center, radius)| (turn(axes, center), radius));
+        match framing {
+            Framing::Picture => Self::fit_turned(turned, axes, size),
+            Framing::Ball => Self::fit_turned(std::iter::once(ball(turned)), axes, size),
+        }
+    }
+
+    /// A sphere is to one side of a plane through the eye exactly if the eye is far enough along the plane's normal, so each of the
+    /// four planes of the frame asks for its greatest distance, and two opposite ones together for the eye's.
+    fn fit_turned(
+        turned: impl Iterator<Item = (DVec3, f64)> + Clone,
         axes: [DVec3; 3],
         (width, height): (u32, u32),
     ) -> Self {
         let shorter = f64::from(width.min(height));
         let half = HALF_ANGLE.to_radians().tan();
         let tangents = [width, height].map(|side| half * f64::from(side) / shorter);
-        let turned = spheres.map(|(center, radius)| (turn(axes, center), radius));
         let mut reach = [[f64::NEG_INFINITY; 2]; 2];
         let normals = tangents.map(|tangent| (FILLED * tangent).atan().sin_cos());
         for (center, radius) in turned.clone() {
@@ -59,6 +71,26 @@ impl Camera {
     pub(super) fn see(&self, point: DVec3) -> DVec3 {
         turn(self.axes, point) - self.eye
     }
+
+    /// Whether all of a sphere is in the picture, its centre as the eye at the origin sees it.
+    pub(super) fn shows(&self, center: DVec3, radius: f64) -> bool {
+        let Window { near, right, top, .. } = self.window;
+        let is_within = |(edge, at): (f64, f64)| {
+            let (sin, cos) = (edge / near).atan().sin_cos();
+            at.abs() * cos + center.z * sin + radius <= 0.0
+        };
+        [(right, center.x), (top, center.y)].into_iter().all(is_within) && center.z + radius < -near
+    }
+}
+
+/// The ball around all spheres whose centre is the middle of the box around them, which a turntable goes around.
+fn ball(spheres: impl Iterator<Item = (DVec3, f64)> + Clone) -> (DVec3, f64) {
+    let (low, high) = spheres.clone().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (center, radius)| {
+        (low.min(center - radius), high.max(center + radius))
+    });
+    let middle = low.midpoint(high);
+    let reach = spheres.map(|(center, radius)| (center - middle).length() + radius);
+    (middle, reach.fold(0.0, f64::max))
 }
 
 /// A point along the axes.

@@ -12,6 +12,8 @@ use super::options::{ByColumn, Coloring};
 
 /// The colour of particles of which nothing else is known.
 const PLAIN: u32 = 0x7fa6cc;
+/// The colour of particles whose own is missing.
+const MISSING: u32 = 0x808080;
 
 /// A colour as `0xrrggbb`.
 pub(super) fn hex_color(rgb: u32) -> DVec3 {
@@ -26,14 +28,16 @@ pub(super) fn hex_of(token: &[u8]) -> Option<DVec3> {
     u32::from_str_radix(text, 16).ok().map(hex_color)
 }
 
-/// The least and the greatest value.
+/// The least and the greatest value; 0 where all are missing.
 pub(super) fn range_of(values: &[f64]) -> (f64, f64) {
-    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| (low.min(value), high.max(value)))
+    let ends = (f64::INFINITY, f64::NEG_INFINITY);
+    let (low, high) = values.iter().fold(ends, |(low, high), &value| (low.min(value), high.max(value)));
+    if low <= high { (low, high) } else { (0.0, 0.0) }
 }
 
 /// The colour of each particle by its number. `range` is that of the values, where they are not categories.
 pub(super) fn colors<'a>(frame: &'a Frame, coloring: &Coloring, range: (f64, f64)) -> Box<dyn Fn(usize) -> DVec3 + 'a> {
-    let plain = hex_color(PLAIN);
+    let (plain, missing) = (hex_color(PLAIN), hex_color(MISSING));
     match coloring {
         Coloring::Fixed(color) => {
             let color = *color;
@@ -43,15 +47,16 @@ pub(super) fn colors<'a>(frame: &'a Frame, coloring: &Coloring, range: (f64, f64
             let is_words = frame.words.len() > 0;
             let map = map.unwrap_or(if is_words { Map::Categories } else { Map::Viridis });
             let colors = map.colors();
-            if map == Map::Categories {
-                return Box::new(move |index| category(&colors, frame.values[index] as usize));
-            }
-            Box::new(move |index| mapped(&colors, frame.values[index], range))
+            Box::new(move |index| match frame.values[index] {
+                value if value.is_nan() => missing,
+                value if map == Map::Categories => category(&colors, value as usize),
+                value => mapped(&colors, value, range),
+            })
         }
         Coloring::Auto if !frame.colors.is_empty() => {
             let greatest = frame.colors.iter().fold(0.0, |greatest: f64, color| greatest.max(color.max_element()));
             let levels = frame.levels.unwrap_or(if greatest > 1.0 { LEVELS } else { 1.0 });
-            Box::new(move |index| frame.colors[index] / levels)
+            Box::new(move |index| if frame.colors[index].is_nan() { missing } else { frame.colors[index] / levels })
         }
         Coloring::Auto | Coloring::Element if frame.kinds.is_empty() => Box::new(move |_| plain),
         Coloring::Auto | Coloring::Element => {

@@ -80,7 +80,7 @@ enum Kind {
 /// Which columns are used, by their places in a row.
 #[derive(Debug)]
 pub(super) struct Columns {
-    pub(super) position: [usize; 3],
+    position: [usize; 3],
     kind: Option<Kind>,
     /// With 0.5 for a diameter, else 1.
     radius: Option<(usize, f64)>,
@@ -158,9 +158,14 @@ impl Columns {
 
     /// Adds the particle of a row. `element` is taken in place of the row's own.
     pub(super) fn read(&mut self, row: &impl Row, element: Option<&[u8]>, frame: &mut Frame, log: &mut Collector) {
-        let position = self.position.map(|column| self.number(row, column, log));
-        let position = DVec3::from_array(position);
-        self.read_at(position, row, element, frame, log);
+        if let Some(position) = self.coordinates(row, log) {
+            self.read_at(position, row, element, frame, log);
+        }
+    }
+
+    /// The coordinates of a row; one without them is left out with a warning.
+    pub(super) fn coordinates(&self, row: &impl Row, log: &mut Collector) -> Option<DVec3> {
+        self.three(self.position, row, log).map_err(|column| self.warn_of(Topic::Coordinate, row, column, log)).ok()
     }
 
     /// The same at a position of its own.
@@ -192,42 +197,86 @@ impl Columns {
             frame.radii.push(radius);
         }
         if let Some(columns) = self.color {
-            let color = columns.map(|column| {
-                let level = self.number(row, column, log);
-                if !(0.0..=frame.levels.unwrap_or(LEVELS)).contains(&level) {
+            let color = self.three(columns, row, log).unwrap_or_else(|column| {
+                self.warn_of(Topic::Value, row, column, log);
+                DVec3::NAN
+            });
+            for (column, level) in columns.into_iter().zip(color.to_array()) {
+                if !level.is_nan() && !(0.0..=frame.levels.unwrap_or(LEVELS)).contains(&level) {
                     log.error(row.place(column), || {
                         let message = format!("`{}` is no part of a colour", shown(&row.token(column)));
                         Detail::new(message, "expected 0 to 1, or 0 to 255")
+                            .help("--color-by takes another column, or one colour for all")
                     });
                 }
-                level
-            });
-            frame.colors.push(DVec3::from_array(color));
+            }
+            frame.colors.push(color);
         }
         if let Some(column) = self.hex {
-            let color = hex_of(&row.token(column)).unwrap_or_else(|| {
-                log.error(row.place(column), || {
-                    let message = format!("`{}` is no colour", shown(&row.token(column)));
-                    Detail::new(message, "expected #rrggbb").help("--color-by COLUMN colours by any column")
-                });
-                DVec3::ZERO
+            let token = row.token(column);
+            let color = hex_of(&token).unwrap_or_else(|| {
+                if is_missing(&token) {
+                    self.warn_of(Topic::Value, row, column, log);
+                } else {
+                    log.error(row.place(column), || {
+                        let message = format!("`{}` is no colour", shown(&token));
+                        Detail::new(message, "expected #rrggbb").help("--color-by COLUMN colours by any column")
+                    });
+                }
+                DVec3::NAN
             });
             frame.colors.push(color);
         }
         if let Some(column) = self.value {
-            let has_words = *self.has_words.get_or_insert_with(|| matches!(row.number(column), Err(Fault::Syntax)));
-            let value = if has_words {
-                f64::from(frame.words.number(&row.token(column)).0)
-            } else {
-                self.number(row, column, log)
-            };
+            let value = self.value(row, column, frame, log);
             frame.values.push(value);
         }
     }
 
+    /// The value that gives a colour, a number or that of a word.
+    fn value(&mut self, row: &impl Row, column: usize, frame: &mut Frame, log: &mut Collector) -> f64 {
+        if self.has_words != Some(true) {
+            let number = row.number(column);
+            // Sodium may be the first word.
+            let may_be_word = || self.has_words.is_none() && row.token(column).eq_ignore_ascii_case(b"na");
+            if number.is_err() && is_missing(&row.token(column)) && !may_be_word() {
+                self.warn_of(Topic::Value, row, column, log);
+                return f64::NAN;
+            }
+            if !*self.has_words.get_or_insert(matches!(number, Err(Fault::Syntax))) {
+                return self.checked(number, row, column, log);
+            }
+        }
+        f64::from(frame.words.number(&row.token(column)).0)
+    }
+
+    /// The numbers of three columns, or the first of these in which one is missing.
+    fn three(&self, columns: [usize; 3], row: &impl Row, log: &mut Collector) -> Result<DVec3, usize> {
+        let [x, y, z] = columns.map(|column| (column, row.number(column)));
+        let lacks =
+            |(column, number): &&(usize, Result<f64, Fault>)| number.is_err() && is_missing(&row.token(*column));
+        if let Some(&(column, _)) = [&x, &y, &z].into_iter().find(lacks) {
+            return Err(column);
+        }
+        let mut checked = |(column, number)| self.checked(number, row, column, log);
+        Ok(DVec3::new(checked(x), checked(y), checked(z)))
+    }
+
+    fn warn_of(&self, topic: Topic, row: &impl Row, column: usize, log: &mut Collector) {
+        log.warning(topic, row.place(column), || {
+            let is_left_out = topic == Topic::Coordinate;
+            let help = if is_left_out { "the row is left out" } else { "the particle is grey" };
+            Detail::new(format!("`{}` is missing", self.names[column]), "expected a value").help(help)
+        });
+    }
+
     /// The number of a column; an error is reported, and 1 goes in its place.
-    pub(super) fn number(&self, row: &impl Row, column: usize, log: &mut Collector) -> f64 {
-        match row.number(column) {
+    fn number(&self, row: &impl Row, column: usize, log: &mut Collector) -> f64 {
+        self.checked(row.number(column), row, column, log)
+    }
+
+    fn checked(&self, number: Result<f64, Fault>, row: &impl Row, column: usize, log: &mut Collector) -> f64 {
+        match number {
             Ok(number) if number.abs() <= MOST => number,
             result => {
                 log.error(row.place(column), || {
@@ -246,6 +295,12 @@ impl Columns {
         };
         Detail::new(format!("{} in a row of {}", count(given as u64, "field"), self.len()), expected)
     }
+}
+
+/// Whether a field has nothing in it, or one of the words for that.
+pub(super) fn is_missing(token: &[u8]) -> bool {
+    let token = token.trim_ascii();
+    ["", "nan", "-nan", "+nan", "na"].iter().any(|word| token.eq_ignore_ascii_case(word.as_bytes()))
 }
 
 /// What is wrong with a number.

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{pdb, table};
+use super::{pdb, points, table};
 
 /// A format of files that hold particles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,7 +15,7 @@ pub enum Format {
     Pdb,
     /// mmCIF.
     Mmcif,
-    /// Values separated by commas, tabs or semicolons under a line of names.
+    /// Values separated by commas, tabs or semicolons under a line of names, or numbers alone.
     Table,
     /// PLY, its vertices.
     Ply,
@@ -35,7 +35,14 @@ impl Format {
         if first.starts_with(b"ITEM:") {
             Some(Self::Lammps)
         } else if is_number && head.contains(&b'\n') {
-            Some(Self::Xyz)
+            // Points may have their number before them, too, but no comment.
+            let is_blank = |line: &&[u8]| line.trim_ascii().is_empty();
+            let mut rest = lines().skip_while(is_blank).skip(1);
+            let fields = |line: &[u8]| points::numbers(line).map(|numbers| numbers.len());
+            let second = rest.next().and_then(fields);
+            let third = rest.next().filter(|line| !is_blank(line));
+            let are_points = second.is_some() && third.is_none_or(|third| fields(third) == second);
+            Some(if are_points { Self::Table } else { Self::Xyz })
         } else if pdb::is_record(first) {
             Some(Self::Pdb)
         } else {
@@ -43,7 +50,7 @@ impl Format {
             if statement.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"data_")) {
                 return Some(Self::Mmcif);
             }
-            table::is_header(statement).then_some(Self::Table)
+            (table::is_header(statement) || points::numbers(statement).is_some()).then_some(Self::Table)
         }
     }
 }

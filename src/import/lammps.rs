@@ -150,8 +150,9 @@ impl Lammps {
             match cell {
                 None => columns.read(&row, None, frame, log),
                 Some(Cell { origin, edges }) => {
-                    let fractions = columns.position.map(|column| columns.number(&row, column, log));
-                    columns.read_at(origin + edges * DVec3::from_array(fractions), &row, None, frame, log);
+                    if let Some(fractions) = columns.coordinates(&row, log) {
+                        columns.read_at(origin + edges * fractions, &row, None, frame, log);
+                    }
                 }
             }
         }

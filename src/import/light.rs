@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::options::Lighting;
 use crate::scene::{Light, Sphere};
+use crate::view::View;
 
 /// How far lamps are from the middle of the scene, in half diagonals of the box around it.
 const DISTANCE: f64 = 10.0;
@@ -15,17 +16,31 @@ const ZENITH: DVec3 = DVec3::new(-0.35, 0.6, 0.72);
 const THREE: [(DVec3, f64); 3] =
     [(DVec3::new(-0.5, 0.6, 0.62), 0.6), (DVec3::new(0.85, 0.1, 0.5), 0.25), (DVec3::new(0.3, 0.75, -0.6), 0.15)];
 
-/// The lights around a scene whose box has this middle and this half diagonal, seen from the origin. Their intensities sum to 1.
-pub(super) fn lights(lighting: Lighting, middle: DVec3, size: f64) -> Vec<Light> {
-    let distance = DISTANCE * size;
-    let lamp = |direction: DVec3, intensity: f64| Light {
-        position: middle + direction.normalize() * distance,
-        intensity: DVec3::splat(intensity),
-    };
-    match lighting {
-        Lighting::Headlight => vec![Light { position: DVec3::ZERO, intensity: DVec3::ONE }],
-        Lighting::Three => THREE.map(|(direction, intensity)| lamp(direction, intensity)).to_vec(),
-        Lighting::Dome(lamps) => dome(lamps).map(|direction| lamp(direction, 1.0 / f64::from(lamps))).collect(),
+/// The lights of a scene of particles, which turn with the eye.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lamps {
+    pub(super) lighting: Lighting,
+    /// Of the box around the spheres.
+    pub(super) middle: DVec3,
+    /// Half the diagonal of that box.
+    pub(super) size: f64,
+}
+
+impl Lamps {
+    /// The lights for this eye. Their intensities sum to 1.
+    pub fn seen_by(&self, view: &View) -> Vec<Light> {
+        let [right, up, back] = view.axes();
+        let turned = |direction: DVec3| right * direction.x + up * direction.y + back * direction.z;
+        let distance = DISTANCE * self.size;
+        let lamp = |direction: DVec3, intensity: f64| Light {
+            position: self.middle + turned(direction.normalize()) * distance,
+            intensity: DVec3::splat(intensity),
+        };
+        match self.lighting {
+            Lighting::Headlight => vec![Light { position: view.eye, intensity: DVec3::ONE }],
+            Lighting::Three => THREE.map(|(direction, intensity)| lamp(direction, intensity)).to_vec(),
+            Lighting::Dome(lamps) => dome(lamps).map(|direction| lamp(direction, 1.0 / f64::from(lamps))).collect(),
+        }
     }
 }
 

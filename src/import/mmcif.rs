@@ -9,6 +9,8 @@ use super::xyz::whole;
 use crate::scene::{Collector, Detail, Span};
 
 const CATEGORY: &[u8] = b"_atom_site.";
+/// How the dictionary for small molecules begins the names of coordinates in the cell.
+const FRACTIONS: &[u8] = b"_atom_site_fract_";
 const COORDINATES: &[[&str; 3]] = &[["Cartn_x", "Cartn_y", "Cartn_z"]];
 const MODEL: &str = "pdbx_PDB_model_num";
 
@@ -85,6 +87,13 @@ impl Mmcif {
             if line.bytes.starts_with(b";") {
                 in_text = !in_text;
             } else if !in_text {
+                if bytes.starts_with(FRACTIONS) {
+                    let Some(line) = source.line()? else { break };
+                    return Err(stop(log, whole(line), || {
+                        Detail::new("fractional coordinates are not read", "expected _atom_site.Cartn_x")
+                            .help("other programs write such a crystal as XYZ: `ase convert crystal.cif crystal.xyz`")
+                    }));
+                }
                 if let Some(name) = bytes.strip_prefix(CATEGORY) {
                     if !in_loop {
                         let Some(line) = source.line()? else { break };

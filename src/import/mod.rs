@@ -20,6 +20,7 @@
 //! assert!(error.contains("bad.xyz:3:8") && error.contains("`zero` is not a number"));
 //! ```
 
+mod atom_name;
 mod camera;
 mod color;
 mod columns;
@@ -34,6 +35,7 @@ mod mmcif;
 mod options;
 mod pdb;
 mod ply;
+mod points;
 mod reader;
 mod scene;
 mod source;
@@ -44,21 +46,24 @@ use std::io::Read;
 
 use self::frame::Frame;
 use self::reader::{Reader, reader_of};
-use self::scene::{Look, scene_of};
+use self::scene::{Look, Made, scene_of};
 use self::source::{Source, Stop};
-use crate::scene::{Collector, Detail, Line, Parsed, Scene, SceneError, Span};
+use crate::scene::{Collector, Detail, Line, Parsed, Scene, SceneError, Span, Topic};
 
 pub use elements::{ELEMENTS, Element};
 pub use format::Format;
-pub use options::{ByColumn, Coloring, Frames, Lighting, Map, Options, Radius, color, direction};
+pub use light::Lamps;
+pub use options::{ByColumn, Coloring, Frames, Framing, Lighting, Map, Options, Radius, color, direction};
 
 /// A frame as a scene.
 #[derive(Debug, Clone)]
 pub struct Imported {
     /// Of the frame, from 1.
     pub number: usize,
-    /// The scene and warnings, or what is wrong with the file.
+    /// The scene and warnings, or what is wrong with the file. Of several frames, one without particles has neither scene nor errors.
     pub parsed: Parsed,
+    /// The scene's lights, which turn with the eye.
+    pub lamps: Option<Lamps>,
     /// What was decided in the user's place.
     pub notes: Vec<String>,
 }
@@ -131,18 +136,33 @@ impl<'r> Import<'r> {
     fn imported(&mut self, mut log: Collector) -> Imported {
         let mut made = None;
         if log.error_count() == 0 && self.frame.positions.is_empty() {
+            let place = self.source.end();
             let detail = || Detail::new("a frame without particles", "expected at least one");
-            log.error(self.source.end(), detail);
-        }
-        if log.error_count() == 0 {
+            if self.options.frames.is_one() {
+                log.error(place, detail);
+            } else {
+                let number = self.number;
+                log.warning(Topic::Frame, place, || detail().help(format!("frame {number} is left out")));
+            }
+        } else if log.error_count() == 0 {
             match scene_of(&self.frame, &self.options, &mut self.look) {
-                Ok(scene) => made = Some(scene),
+                Ok(found) => match found.scene.check() {
+                    Ok(()) => made = Some(found),
+                    // What is too large before it is moved, or after.
+                    Err(why) => log.error(self.source.end(), || {
+                        let message = format!("the particles of frame {} reach too far: {why}", self.number);
+                        Detail::new(message, "expected numbers that a scene can have")
+                    }),
+                },
                 Err(error) => log.error(self.source.end(), || Detail::new(error.to_string(), "no such view")),
             }
         }
-        let (scene, notes) = made.unzip();
-        let parsed = Parsed::of(&self.name, scene, log);
-        Imported { number: self.number.max(1), parsed, notes: notes.unwrap_or_default() }
+        let number = self.number.max(1);
+        let (scene, lamps, notes) = match made {
+            Some(Made { scene, lamps, notes }) => (Some(scene), Some(lamps), notes),
+            None => (None, None, Vec::new()),
+        };
+        Imported { number, parsed: Parsed::of(&self.name, scene, log), lamps, notes }
     }
 }
 

@@ -5,6 +5,7 @@ use std::str::FromStr;
 use glam::DVec3;
 
 use super::color::hex_of;
+use super::columns::LEVELS;
 use crate::view::{View, ViewError};
 
 pub use super::frames::Frames;
@@ -31,6 +32,10 @@ pub struct Options {
     pub background: DVec3,
     /// The picture's width and height in pixels.
     pub size: (u32, u32),
+    /// What fills the picture.
+    pub framing: Framing,
+    /// The eye for which the lights are set, in the scene's coordinates.
+    pub view: View,
 }
 
 impl Options {
@@ -60,6 +65,8 @@ impl Default for Options {
             lighting: Lighting::default(),
             background: DVec3::ONE,
             size: (1024, 768),
+            framing: Framing::default(),
+            view: View::FILE,
         }
     }
 }
@@ -127,8 +134,10 @@ impl FromStr for Coloring {
         if text == "element" {
             return Ok(Self::Element);
         }
-        if let Ok(color) = color(text) {
-            return Ok(Self::Fixed(color));
+        match color(text) {
+            Ok(color) => return Ok(Self::Fixed(color)),
+            Err(why) if parts(text).is_some_and(|parts| parts.len() == 3) => return Err(why),
+            Err(_) => {}
         }
         let (rest, range) = match text.rsplit_once(':') {
             Some((rest, last)) if last.contains("..") => (rest, Some(range(last)?)),
@@ -162,10 +171,40 @@ fn range(text: &str) -> Result<(f64, f64), String> {
 ///
 /// What was expected.
 pub fn color(text: &str) -> Result<DVec3, String> {
-    let parts = || text.split(',').map(|part| part.trim().parse().ok()).collect::<Option<Vec<f64>>>();
-    match parts().as_deref() {
+    match parts(text).as_deref() {
         Some(&[r, g, b]) if [r, g, b].iter().all(|part| (0.0..=1.0).contains(part)) => Ok(DVec3::new(r, g, b)),
+        Some(&[r, g, b]) if [r, g, b].iter().all(|part| (0.0..=LEVELS).contains(part)) => {
+            let [r, g, b] = [r, g, b].map(|level| level.round() as u8);
+            Err(format!("the parts of a colour are 0 to 1; this may be meant: #{r:02x}{g:02x}{b:02x}"))
+        }
         _ => hex_of(text.as_bytes()).ok_or_else(|| "expected a colour R,G,B of parts 0 to 1, or #rrggbb".into()),
+    }
+}
+
+/// Numbers between commas.
+fn parts(text: &str) -> Option<Vec<f64>> {
+    text.split(',').map(|part| part.trim().parse().ok()).collect()
+}
+
+/// What fills the picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Framing {
+    /// The particles as the eye sees them.
+    #[default]
+    Picture,
+    /// The ball around them: they stay within the picture from all sides.
+    Ball,
+}
+
+impl FromStr for Framing {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "picture" => Ok(Self::Picture),
+            "ball" => Ok(Self::Ball),
+            _ => Err("expected picture or ball".into()),
+        }
     }
 }
 
@@ -211,14 +250,13 @@ impl FromStr for Lighting {
 ///
 /// What was expected.
 pub fn direction(text: &str) -> Result<DVec3, String> {
-    let parts = || text.split(',').map(|part| part.trim().parse().ok()).collect::<Option<Vec<f64>>>();
     let axis = match text.trim_start_matches(['+', '-']) {
         "x" => Some(DVec3::X),
         "y" => Some(DVec3::Y),
         "z" => Some(DVec3::Z),
         _ => None,
     };
-    match (axis, parts().as_deref()) {
+    match (axis, parts(text).as_deref()) {
         (Some(axis), _) if text.len() <= 2 => Ok(if text.starts_with('-') { -axis } else { axis }),
         (_, Some(&[x, y, z])) if [x, y, z].iter().all(|part| part.is_finite()) && [x, y, z] != [0.0; 3] => {
             Ok(DVec3::new(x, y, z))

@@ -2,6 +2,7 @@
 //!
 //! Columns as in the format's version 3.3. A frame ends with `ENDMDL` or `END`.
 
+use super::atom_name::symbol;
 use super::columns::{Columns, TextRow, XYZ};
 use super::elements::Element;
 use super::frame::Frame;
@@ -28,6 +29,8 @@ const FIELDS: [(&str, usize, usize); 13] = [
     ("element", ELEMENT, ELEMENT + 1),
 ];
 const NAME: usize = 13;
+/// The residue's name; programs that have names of four letters use the blank behind it.
+const RESIDUE: [usize; 2] = [18, 21];
 /// The last column of the coordinates.
 const LAST: usize = 54;
 const ELEMENT: usize = 77;
@@ -108,7 +111,15 @@ impl Reader for Pdb {
                 continue;
             }
             let spans = FIELDS.map(|(_, first, last)| field(line, first, last));
-            columns.read(&TextRow { line, spans: &spans }, Some(&element(line.bytes)), frame, log);
+            let own = own_element(line.bytes);
+            let guessed = own.is_none().then(|| {
+                let [first, last] = RESIDUE;
+                symbol(&line.bytes[NAME - 1..NAME + 3], line.bytes[first - 1..last].trim_ascii())
+            });
+            let before = frame.positions.len();
+            columns.read(&TextRow { line, spans: &spans }, own.or(guessed.as_deref()), frame, log);
+            let is_guess = guessed.is_some_and(|symbol| Element::of(&symbol).is_some());
+            frame.guesses += u64::from(is_guess && frame.positions.len() > before);
         }
         Ok(is_begun)
     }
@@ -124,25 +135,11 @@ fn field(line: Line<'_>, first: usize, last: usize) -> Span {
     Span { start, end: start + bytes.trim_ascii().len() }
 }
 
-/// The element of an atom: by its columns, or guessed by its name, which begins in the second column where the symbol has one
-/// letter.
-fn element(line: &[u8]) -> Vec<u8> {
+/// The element that an atom's record names.
+fn own_element(line: &[u8]) -> Option<&[u8]> {
     let own = line.get(ELEMENT - 1..).unwrap_or_default();
     let own = own[..own.len().min(2)].trim_ascii();
-    if !own.is_empty() && Element::of(own).is_some() {
-        return own.to_vec();
-    }
-    let name = &line[NAME - 1..NAME + 3];
-    let is_two = name[0].is_ascii_alphabetic() && name[1].is_ascii_alphabetic();
-    // A name of four letters fills all columns: mostly a hydrogen's, such as HG11.
-    let is_full = !name[3].is_ascii_whitespace();
-    if is_two && !(is_full && name[0].eq_ignore_ascii_case(&b'H')) && Element::of(&name[..2]).is_some() {
-        return name[..2].to_vec();
-    }
-    match name.iter().find(|byte| byte.is_ascii_alphabetic()) {
-        Some(letter) => vec![letter.to_ascii_uppercase()],
-        None => name.trim_ascii().to_vec(),
-    }
+    (!own.is_empty() && Element::of(own).is_some()).then_some(own)
 }
 
 fn unknown_record(record: &[u8]) -> Detail<'static> {

@@ -5,8 +5,8 @@ use glam::DVec3;
 use super::camera::Camera;
 use super::color::{colors, range_of};
 use super::elements::Element;
-use super::frame::Frame;
-use super::light::{lights, material};
+use super::frame::{Frame, Numbers};
+use super::light::{Lamps, material};
 use super::options::{ByColumn, Coloring, Options, Radius};
 use crate::scene::{Names, Scene, Sphere};
 use crate::view::ViewError;
@@ -22,12 +22,17 @@ pub(super) struct Look {
     spacing: f64,
 }
 
-/// The scene of a frame with at least one particle, and what the user may want to know of it.
-pub(super) fn scene_of(
-    frame: &Frame,
-    options: &Options,
-    look: &mut Option<Look>,
-) -> Result<(Scene, Vec<String>), ViewError> {
+/// A frame as a scene.
+pub(super) struct Made {
+    pub(super) scene: Scene,
+    pub(super) lamps: Lamps,
+    /// What the user may want to know of it.
+    pub(super) notes: Vec<String>,
+}
+
+/// The scene of a frame with at least one particle.
+pub(super) fn scene_of(frame: &Frame, options: &Options, look: &mut Option<Look>) -> Result<Made, ViewError> {
+    let is_first = look.is_none();
     let spacing = look.map_or_else(|| half_distance(&frame.positions), |look| look.spacing);
     let (radius_of, without) = radii(frame, options, spacing);
     let radius_of = |index| radius_of(index) * options.radius_scale;
@@ -37,12 +42,15 @@ pub(super) fn scene_of(
         let (without, spacing) = (count(without, "particle"), number(short));
         notes.push(format!("no radius for {without}: half their mean distance is taken, {spacing} (--radius sets it)"));
     }
+    if is_first {
+        notes.extend(notes_of_elements(frame));
+    }
     let look = if let Some(look) = *look {
         look
     } else {
         let axes = options.axes()?;
         let spheres = frame.positions.iter().enumerate().map(|(index, &center)| (center, radius_of(index)));
-        let camera = Camera::fit(spheres, axes, options.size);
+        let camera = Camera::fit(spheres, axes, options.size, options.framing);
         let range = match &options.coloring {
             Coloring::Column(ByColumn { range: Some(range), .. }) => *range,
             _ => range_of(&frame.values),
@@ -62,17 +70,44 @@ pub(super) fn scene_of(
     let (low, high) = spheres.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), sphere| {
         (low.min(sphere.center - sphere.scale), high.max(sphere.center + sphere.scale))
     });
-    let lights = lights(options.lighting, (low + high) / 2.0, (high - low).length() / 2.0);
+    let outside = spheres.iter().filter(|sphere| !look.camera.shows(sphere.center, sphere.scale.x)).count() as u64;
+    if !is_first && outside > 0 {
+        notes.push(format!("warning: {} not whole in the picture, which fits the first frame", are(outside)));
+    }
+    let lamps = Lamps { lighting: options.lighting, middle: (low + high) / 2.0, size: (high - low).length() / 2.0 };
     let (width, height) = options.size;
     let scene = Scene {
         spheres,
         sphere_names: names(frame),
-        lights,
+        lights: lamps.seen_by(&options.view),
         background: options.background,
         ambient: DVec3::ONE,
         ..Scene::new(look.camera.window, width, height)
     };
-    Ok((scene, notes))
+    Ok(Made { scene, lamps, notes })
+}
+
+/// How many particles, with their verb.
+fn are(particles: u64) -> String {
+    let verb = if particles == 1 { "is" } else { "are" };
+    format!("{} {verb}", count(particles, "particle"))
+}
+
+/// How elements were found, where the file does not say it.
+fn notes_of_elements(frame: &Frame) -> Vec<String> {
+    let mut notes = Vec::new();
+    if let Some(numbers) = frame.numbers {
+        let meaning = match numbers {
+            Numbers::Types => "types, not for elements",
+            Numbers::Atomic => "atomic numbers",
+        };
+        notes.push(format!("the numbers before the coordinates are taken for {meaning}"));
+    }
+    if frame.guesses > 0 {
+        let guesses = count(frame.guesses, "particle");
+        notes.push(format!("warning: the elements of {guesses} are guessed from names of atoms"));
+    }
+    notes
 }
 
 /// The radius of each particle by its number, before it is scaled, and for how many nothing gives one.

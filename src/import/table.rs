@@ -1,9 +1,11 @@
 //! Tables: a line with the names of the columns, then a line a particle; between fields commas, tabs or semicolons.
-//! Lines that begin with `#` are comments.
+//! Lines that begin with `#` or `//` are comments. Without names, numbers say by how many there are what they are; a comment above them
+//! may name them.
 
 use super::columns::{Columns, TextRow, XYZ};
 use super::frame::Frame;
 use super::options::Options;
+use super::points;
 use super::reader::Reader;
 use super::source::{Source, Stop, end_of, stop};
 use super::xyz::whole;
@@ -11,10 +13,9 @@ use crate::scene::{Collector, Detail, Span, is_statement, parse_number};
 
 /// What may stand between fields.
 const SEPARATORS: [u8; 3] = [b'\t', b';', b','];
-/// A table has at least so many columns.
-const LEAST: usize = 3;
 
-/// Whether a line names the columns of a table: fields that are no numbers, the first of which begins no statement of a scene.
+/// Whether a line names the columns of a table: fields of which two at least are no numbers, the first of which begins no statement
+/// of a scene. Some may have no name.
 pub(super) fn is_header(line: &[u8]) -> bool {
     let is_text = str::from_utf8(line).is_ok_and(|line| !line.contains(|c: char| c.is_control() && c != '\t'));
     let is_code = line.trim_ascii_start().first().is_some_and(|first| b"{[(<".contains(first));
@@ -24,20 +25,41 @@ pub(super) fn is_header(line: &[u8]) -> bool {
     let mut spans = Vec::new();
     separator(line).is_some_and(|separator| {
         split_cells(line, separator, &mut spans);
-        let cell = |span: &Span| &line[span.start..span.end];
-        let is_name = |span: &Span| !cell(span).is_empty() && parse_number(cell(span)).is_err();
-        spans.len() >= LEAST && spans.iter().all(is_name) && !is_statement(cell(&spans[0]))
+        let cells = spans.iter().map(|span| &line[span.start..span.end]);
+        let mut names = cells.filter(|cell| !cell.is_empty() && parse_number(cell).is_err());
+        names.next().is_some_and(|first| !is_statement(first)) && names.next().is_some()
     })
 }
 
 /// Whether there is nothing in a line, or a comment.
 pub(super) fn is_empty(line: &[u8]) -> bool {
-    line.trim_ascii_start().first().is_none_or(|&first| first == b'#')
+    let start = line.trim_ascii_start();
+    start.is_empty() || start.starts_with(b"#") || start.starts_with(b"//")
 }
 
 /// The first of the separators that the line has at all.
-fn separator(header: &[u8]) -> Option<u8> {
+pub(super) fn separator(header: &[u8]) -> Option<u8> {
     SEPARATORS.into_iter().find(|separator| header.contains(separator))
+}
+
+/// Whether a line is a whole number, as before the points of some programs.
+fn is_count(line: &[u8]) -> bool {
+    let token = line.trim_ascii();
+    !token.is_empty() && token.iter().all(u8::is_ascii_digit)
+}
+
+/// The names that a comment above rows of so many fields has, if it has them.
+fn names_in(comment: &[u8], fields: usize) -> Option<Vec<String>> {
+    let marks = comment.iter().take_while(|byte| byte.is_ascii_whitespace() || b"#/".contains(byte)).count();
+    let text = &comment[marks..];
+    let mut spans = Vec::new();
+    [separator(text), None].into_iter().find_map(|separator| {
+        points::split(text, separator, &mut spans);
+        let names: Vec<_> =
+            spans.iter().map(|span| String::from_utf8_lossy(&text[span.start..span.end]).into_owned()).collect();
+        let has = |three: &[&str; 3]| three.iter().all(|name| names.iter().any(|other| other == name));
+        (names.len() == fields && XYZ.iter().any(has)).then_some(names)
+    })
 }
 
 #[derive(Debug, Default)]
@@ -53,40 +75,67 @@ impl Reader for Table {
         options: &Options,
         log: &mut Collector,
     ) -> Result<bool, Stop> {
-        while source.peek()?.is_some_and(|line| is_empty(line.bytes)) {
-            source.line()?;
-        }
-        let Some(header) = source.line()? else { return Ok(false) };
+        let mut comment = skip_comments(source)?;
+        let Some(mut first) = source.peek()? else { return Ok(false) };
         let Some(frame) = frame else {
             while source.line()?.is_some() {}
             return Ok(true);
         };
         frame.clear();
-        let separator = separator(header.bytes).unwrap_or(b',');
-        split_cells(header.bytes, separator, &mut self.spans);
-        let name = |span: &Span| String::from_utf8_lossy(header.token(*span)).into_owned();
-        let names = self.spans.iter().map(name).collect();
-        let mut columns = Columns::of(names, XYZ, options, whole(header), log)?;
+        let has_count = is_count(first.bytes);
+        if has_count {
+            source.line()?;
+            comment = skip_comments(source)?.or(comment);
+            let Some(next) = source.peek()? else { return Err(no_rows(source, log)) };
+            first = next;
+        }
+        let separator = separator(first.bytes);
+        let numbers = points::numbers(first.bytes);
+        let mut columns = if let Some(numbers) = &numbers {
+            let named = comment.and_then(|comment| names_in(&comment, numbers.len()));
+            let names = named.unwrap_or_else(|| points::names(numbers, has_count));
+            Columns::of(names, XYZ, options, whole(first), log)?
+        } else {
+            let Some(header) = source.line()? else { return Ok(false) };
+            points::split(header.bytes, separator, &mut self.spans);
+            let name = |(number, span): (usize, &Span)| match header.token(*span) {
+                b"" => format!("column_{number}"),
+                name => String::from_utf8_lossy(name).into_owned(),
+            };
+            Columns::of((1..).zip(&self.spans).map(name).collect(), XYZ, options, whole(header), log)?
+        };
+        let mut has_rows = false;
         while let Some(line) = source.line()? {
             if is_empty(line.bytes) {
                 continue;
             }
-            split_cells(line.bytes, separator, &mut self.spans);
+            has_rows = true;
+            points::split(line.bytes, separator, &mut self.spans);
             if self.spans.len() == columns.len() {
                 columns.read(&TextRow { line, spans: &self.spans }, None, frame, log);
             } else {
                 log.error(end_of(line), || columns.missing(self.spans.len()));
             }
         }
-        if frame.positions.is_empty() {
-            return Err(stop(log, source.end(), || Detail::new("a table without rows", "expected a row of numbers")));
-        }
-        Ok(true)
+        if has_rows { Ok(true) } else { Err(no_rows(source, log)) }
     }
 }
 
+/// Takes empty lines and comments, and gives the last comment.
+fn skip_comments(source: &mut Source<'_>) -> Result<Option<Vec<u8>>, Stop> {
+    let mut last = None;
+    while source.peek()?.is_some_and(|line| is_empty(line.bytes)) {
+        last = source.line()?.map(|line| line.bytes.to_vec()).filter(|line| !line.trim_ascii().is_empty()).or(last);
+    }
+    Ok(last)
+}
+
+fn no_rows(source: &Source<'_>, log: &mut Collector) -> Stop {
+    stop(log, source.end(), || Detail::new("a table without rows", "expected a row of numbers"))
+}
+
 /// The cells of a line without blanks and quotes around them.
-fn split_cells(line: &[u8], separator: u8, spans: &mut Vec<Span>) {
+pub(super) fn split_cells(line: &[u8], separator: u8, spans: &mut Vec<Span>) {
     spans.clear();
     let mut start = 0;
     loop {

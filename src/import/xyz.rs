@@ -2,10 +2,13 @@
 //!
 //! The comment of extended XYZ names the columns: `Properties=species:S:1:pos:R:3:radius:R:1`. A column of several fields is called
 //! by its name and a number from 1: `forces_2`.
+//!
+//! Rows of plain XYZ may have numbers only: a point, or an atom whose type or atomic number is before its coordinates.
 
 use super::columns::{Columns, TextRow, XYZ, no_number};
 use super::frame::Frame;
 use super::options::Options;
+use super::points;
 use super::reader::Reader;
 use super::source::{Source, Stop, end_of, split_blanks, stop};
 use crate::scene::{Collector, Detail, Line, Span, parse_number, shown};
@@ -35,9 +38,12 @@ impl Reader for Xyz {
         let atoms = number_of_atoms(line, log)?;
         let comment = source.demand(log, || Detail::new("the file ends before the comment", "expected a comment"))?;
         let Some(frame) = frame else {
-            return skip(source, atoms, log).map(|()| true);
+            skip(source, atoms, log)?;
+            return check_end(source, log).map(|()| true);
         };
         frame.clear();
+        // The comment of `dump xyz` of LAMMPS, which writes types.
+        let are_types = comment.bytes.starts_with(b"Atoms. Timestep");
         let names = properties(comment, log)?;
         let is_extended = names.is_some();
         let mut columns = match names {
@@ -50,7 +56,7 @@ impl Reader for Xyz {
             let columns = if let Some(columns) = &mut columns {
                 columns
             } else {
-                columns.insert(Columns::of(plain(self.spans.len()), XYZ, options, whole(line), log)?)
+                columns.insert(Columns::of(plain(line.bytes, self.spans.len()), XYZ, options, whole(line), log)?)
             };
             if self.spans.len() < columns.len() || (is_extended && self.spans.len() > columns.len()) {
                 log.error(end_of(line), || columns.missing(self.spans.len()));
@@ -58,7 +64,10 @@ impl Reader for Xyz {
             }
             columns.read(&TextRow { line, spans: &self.spans }, None, frame, log);
         }
-        Ok(true)
+        if !is_extended {
+            frame.decide_numbers(are_types);
+        }
+        check_end(source, log).map(|()| true)
     }
 }
 
@@ -76,6 +85,12 @@ pub(super) fn whole(line: Line<'_>) -> crate::scene::Location<'_> {
     line.place(Span { start: 0, end: line.bytes.len() })
 }
 
+/// Behind a frame is another one, or nothing.
+fn check_end(source: &mut Source<'_>, log: &mut Collector) -> Result<(), Stop> {
+    source.skip_blank_lines()?;
+    source.peek()?.map_or(Ok(()), |line| number_of_atoms(line, log).map(drop))
+}
+
 fn number_of_atoms(line: Line<'_>, log: &mut Collector) -> Result<u64, Stop> {
     let token = line.bytes.trim_ascii();
     let atoms = str::from_utf8(token).ok().and_then(|text| text.parse().ok());
@@ -88,7 +103,16 @@ fn number_of_atoms(line: Line<'_>, log: &mut Collector) -> Result<u64, Stop> {
     })
 }
 
-fn plain(fields: usize) -> Vec<String> {
+fn plain(row: &[u8], fields: usize) -> Vec<String> {
+    let token = row.trim_ascii_start();
+    let is_whole = token.iter().take_while(|byte| !byte.is_ascii_whitespace()).all(u8::is_ascii_digit);
+    if let Some(numbers) = points::numbers(row) {
+        let names = points::names(&numbers, false);
+        // A whole number in the first place is a type, unless what follows is too little or looks like a colour.
+        if !is_whole || fields == 3 || fields == 6 && names.iter().any(|name| name == "r") {
+            return names;
+        }
+    }
     let rest = (PLAIN.len() + 1..=fields).map(|number| format!("column_{number}"));
     PLAIN.map(str::to_owned).into_iter().chain(rest).collect()
 }

@@ -146,11 +146,24 @@ pub(crate) enum Topic {
     /// Of imported files.
     Kind,
     Record,
+    Coordinate,
+    Value,
+    Frame,
 }
 
 impl Topic {
-    const ALL: [Self; 7] =
-        [Self::Color, Self::Coefficient, Self::Intensity, Self::Tiny, Self::Window, Self::Kind, Self::Record];
+    const ALL: [Self; 10] = [
+        Self::Color,
+        Self::Coefficient,
+        Self::Intensity,
+        Self::Tiny,
+        Self::Window,
+        Self::Kind,
+        Self::Record,
+        Self::Coordinate,
+        Self::Value,
+        Self::Frame,
+    ];
 
     fn warnings(self) -> &'static str {
         match self {
@@ -161,6 +174,9 @@ impl Topic {
             Self::Window => "warnings about the window are",
             Self::Kind => "warnings about unknown elements are",
             Self::Record => "warnings about unknown records are",
+            Self::Coordinate => "warnings about rows without coordinates are",
+            Self::Value => "warnings about missing colours are",
+            Self::Frame => "warnings about empty frames are",
         }
     }
 }

@@ -266,7 +266,9 @@ fn the_program_measures_lists_and_writes() {
     let mut former: serde_json::Value = serde_json::from_str(&baseline).unwrap();
     for scene in former["bench"]["families"][0]["scenes"].as_array_mut().unwrap() {
         let runs = scene["measured"][0]["picture"]["runs"].as_array_mut().unwrap();
-        runs.iter_mut().for_each(|run| *run = (run.as_f64().unwrap() / 100.0).into());
+        for run in runs {
+            *run = (run.as_f64().unwrap() / 100.0).into();
+        }
     }
     std::fs::write(folder.path().join("fast.json"), former.to_string()).unwrap();
     let (table, _) = run(&format!("bench --families spheres {small} --baseline r.json --fail-slower 10000%"), 0);

@@ -3,8 +3,9 @@
 use std::process::{Command, Output, Stdio};
 
 use trueray::DVec3;
-use trueray::import::{Coloring, Format, Frames, Import, Imported, Lighting, Map, Options, Radius, scene};
+use trueray::import::{Coloring, Format, Frames, Framing, Import, Imported, Lighting, Map, Options, Radius, scene};
 use trueray::scene::{Diagnostic, Scene, Severity, parse};
+use trueray::view::View;
 
 use crate::support::root;
 
@@ -117,6 +118,10 @@ fn formats_are_told_by_what_they_begin_with() {
         (PLY, Format::Ply),
         ("\u{FEFF}\n# made by hand\nx;y;z\n1;2;3\n", Format::Table),
         ("x\ty\tz\r\n1\t2\t3\r\n", Format::Table),
+        (",x,y,z\n0,1,2,3\n", Format::Table),
+        ("0.5 1 2\n3 4 5\n", Format::Table),
+        ("1\n0.5 1 2 9 0 0 255\n", Format::Table),
+        ("1\n10 10 10\n1 1 2 3\n", Format::Xyz),
     ];
     for (text, format) in all {
         assert_eq!(Format::of(text.as_bytes()), Some(format), "{text}");
@@ -241,7 +246,8 @@ fn malformed_xyz_is_refused_where_it_is_wrong() {
         ("3\nc\nO 0 0 0\nH 0 0 1\n", 4, 8, "end of file", "the file ends after 2 of 3 atoms"),
         ("1\n", 1, 2, "end of file", "ends before the comment"),
         ("1\nc\nO 0 zero 0\n", 3, 5, "zero", "`zero` is not a number"),
-        ("1\nc\nO 0 nan 0\n", 3, 5, "nan", "`nan` is not a finite number"),
+        ("1\nc\nO 0 inf 0\n", 3, 5, "inf", "`inf` is not a finite number"),
+        ("1\nc\nO 0 nan 0\n", 3, 10, "end of line", "a frame without particles"),
         ("1\nc\nO 0 1e300 0\n", 3, 5, "1e300", "`1e300` is too large"),
         ("1\nc\nO 0 0\n", 3, 6, "end of line", "3 fields in a row of 4"),
         ("2\nc\nO 0 0 0 9\nO 0 0\n", 4, 6, "end of line", "3 fields in a row of 5"),
@@ -286,7 +292,6 @@ fn malformed_dumps_are_refused_where_they_are_wrong() {
 fn malformed_structures_are_refused_where_they_are_wrong() {
     assert_faults(&[
         (&PDB.replace("   6.500", "   6.5x0"), 3, 42, "6.5x0", "`6.5x0` is not a number"),
-        (&PDB.replace("   6.500", "        "), 3, 47, "end of line", "`y` is missing"),
         (&PDB[..60], 2, 46, "end of line", "an atom's record of 45 columns"),
         ("HEADER    NOTHING\nEND\n", 2, 4, "end of file", "ends before its first frame"),
         (&CIF.replace("1.5 2 3 'a b' 1", "1.5 2 ? x 1"), 16, 11, "?", "`?` is not a number"),
@@ -300,7 +305,10 @@ fn malformed_structures_are_refused_where_they_are_wrong() {
 #[test]
 fn malformed_tables_and_points_are_refused_where_they_are_wrong() {
     assert_faults(&[
-        ("x,y,z\n1,2,3\n1,,3\n", 3, 3, "end of line", "`y` is missing"),
+        ("x,y\n1,2\n", 1, 1, "x,y", "no columns of coordinates among x, y"),
+        ("x,y,2024\n1,2,3\n", 1, 1, "x,y,2024", "no columns of coordinates"),
+        ("1 2 3\n1 2\n", 2, 4, "end of line", "2 fields in a row of 3"),
+        ("1 2 3 0 255 0\n1 2 3 0 256 0\n", 2, 9, "256", "`256` is no part of a colour"),
         ("x,y,z\n1,2\n", 2, 4, "end of line", "2 fields in a row of 3"),
         ("x,y,z\n1,2,3,4\n", 2, 8, "end of line", "4 fields in a row of 3"),
         ("x,y,z\n", 1, 6, "end of line", "a table without rows"),
@@ -312,6 +320,7 @@ fn malformed_tables_and_points_are_refused_where_they_are_wrong() {
         (&PLY.replace("vertex 2", "vertex 3"), 17, 18, "end of file", "ends after 2 of 3 `vertex`"),
         (&PLY.replace("ascii", "ebcdic"), 2, 1, "format ebcdic 1.0", "is not understood"),
         (&PLY.replace("4 5 6 0", "4 5 6"), 17, 16, "end of line", "6 fields in a row of 7"),
+        ("data_X\nloop_\n_atom_site_label\n_atom_site_fract_x\n", 4, 1, "_atom_site_fract_x", "fractional coordinates"),
         ("ply\nformat ascii 1.0\nend_header\n", 3, 11, "end of line", "no element `vertex`"),
     ]);
 }
@@ -339,6 +348,158 @@ fn unknown_elements_and_records_are_warned_of() {
     let imported = &import(PDB.replace("END\n", "ENC\n"), &Options::default())[0];
     assert_eq!(imported.parsed.diagnostics[0].message, "`ENC` is no record of a PDB file");
     assert!(imported.parsed.scene.is_some());
+}
+
+#[test]
+fn columns_without_names_are_numbered() {
+    let plain = read("x,y,z,r,g,b\n1,2,3,255,0,0\n4,5,6,0,255,0\n");
+    for text in [
+        ",x,y,z,r,g,b\n0,1,2,3,255,0,0\n1,4,5,6,0,255,0\n",
+        "\"\",\"x\",\"y\",\"z\",\"r\",\"g\",\"b\"\n\"1\",1,2,3,255,0,0\n\"2\",4,5,6,0,255,0\n",
+        "x,y,z,r,g,b,\n1,2,3,255,0,0,\n4,5,6,0,255,0,\n",
+    ] {
+        assert_eq!(read(text), plain, "{text}");
+    }
+    assert_eq!(fault_with(",x,y,z\n0,1,2,3\n", &by("q")).expected, "the columns are column_1, x, y, z");
+}
+
+#[test]
+fn points_need_no_names() {
+    let plain = read("x,y,z,r,g,b\n1,2,3,255,0,0\n4,5.5,6,0,255,0\n");
+    for text in [
+        "1 2 3 255 0 0\n4 5.5 6 0 255 0\n",
+        "1;2;3;255;0;0\n4;5.5;6;0;255;0\n",
+        "1\t2\t3\t255\t0\t0\n4\t5.5\t6\t0\t255\t0\n",
+        "//X Y Z R G B\n1 2 3 255 0 0\n4 5.5 6 0 255 0\n",
+        "# r, g, b, x, y, z\n255 0 0 1 2 3\n0 255 0 4 5.5 6\n",
+        "1 2 3 255 0 0 7\n4 5.5 6 0 255 0 8\n",
+        "2\n1 2 3 7 255 0 0\n4 5.5 6 8 0 255 0\n",
+        "2\n1.0 2 3 255 0 0\n4 5.5 6 0 255 0\n",
+        "2\nComment\n1.0 2 3 255 0 0\n4 5.5 6 0 255 0\n",
+    ] {
+        assert_eq!(read(text), plain, "{text}");
+    }
+    assert_positions(&read("# made by hand\n1, 2, 3\n4, 5, 6\n"), &[[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
+    let intensity = Options { radius: Radius::Column("intensity".into()), ..Options::default() };
+    assert_eq!(radii(&read_with("1 2 3 0.5\n4 5 6 0.25\n", &intensity)), [0.5, 0.25]);
+    // Normals are no colours.
+    assert_eq!(colors(&read("1 2 3 0 0 -1\n")), colors(&read("1 2 3\n")));
+}
+
+#[test]
+fn rows_without_coordinates_are_left_out_and_without_colours_grey() {
+    for (text, token) in [
+        ("x,y,z\n1,2,3\n1,,3\n4,5,6\n", "end of line"),
+        ("x,y,z\n1,2,3\n1,NaN,3\n4,5,6\n", "NaN"),
+        ("x,y,z\n1,2,3\n1,NA,3\n4,5,6\n", "NA"),
+        ("# points\n1 2 3\n1 nan 3\n4 5 6\n", "nan"),
+    ] {
+        let parsed = &import(text, &Options::default())[0].parsed;
+        let [warning] = &parsed.diagnostics[..] else { panic!("{text}: {}", parsed.report(false)) };
+        assert_eq!((warning.severity, warning.line, &*warning.message), (Severity::Warning, 3, "`y` is missing"));
+        assert!(warning.token == token || token == "end of line", "{}", warning.token);
+        assert_positions(parsed.scene.as_ref().unwrap(), &[[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
+    }
+    let grey = bytes([128; 3]);
+    let many = format!("x,y,z\n1,2,3\n{}", "nan,0,0\n".repeat(30));
+    let parsed = &import(many, &Options::default())[0].parsed;
+    assert!(
+        parsed.report(false).contains("10 more warnings about rows without coordinates"),
+        "{}",
+        parsed.report(false)
+    );
+    for (text, options, expected) in [
+        ("x,y,z,r,g,b\n1,2,3,,,\n4,5,6,0,255,0\n", Options::default(), [grey, [0.0, 1.0, 0.0]]),
+        ("x,y,z,color\n1,2,3,\n4,5,6,#00ff00\n", Options::default(), [grey, [0.0, 1.0, 0.0]]),
+        ("x,y,z,v\n1,2,3,\n4,5,6,7\n", by("v:gray:6..7"), [grey, [1.0; 3]]),
+        ("x,y,z,v\n1,2,3,nan\n4,5,6,nan\n", by("v"), [grey, grey]),
+        ("x,y,z,v\n1,2,3,\n4,5,6,Na\n", by("v"), [grey, Map::Categories.colors()[0].to_array()]),
+    ] {
+        let parsed = &import(text, &options)[0].parsed;
+        assert_eq!((parsed.errors, &*parsed.diagnostics[0].help.clone().unwrap()), (0, "the particle is grey"));
+        assert_eq!(colors(parsed.scene.as_ref().unwrap()), expected, "{text}");
+    }
+}
+
+/// The symbols that are guessed for atoms of a name in its four columns and a residue.
+#[test]
+fn elements_are_guessed_from_names_of_atoms() {
+    let cases = [
+        (" CA ", "ALA", "C"),
+        ("CA  ", "ALA", "C"),
+        (" CD1", "LEU", "C"),
+        ("HG11", "VAL", "H"),
+        (" HG ", "SER", "H"),
+        (" NE2", "HID", "N"),
+        ("1HB ", "ALA", "H"),
+        (" OH2", "TIP3", "O"),
+        (" CA ", "CA", "CA"),
+        ("NA  ", "NA+", "NA"),
+        (" NA ", "NA", "NA"),
+        ("CL- ", "CL-", "CL"),
+        (" CL ", "CL", "CL"),
+        (" K  ", "K", "K"),
+        ("SOD ", "SOD", "NA"),
+        ("CLA ", "CLA", "CL"),
+        ("POT ", "POT", "K"),
+        ("CES ", "CES", "CS"),
+        ("CAL ", "CAL", "CA"),
+        ("CD2 ", "CD2", "CD"),
+        (" FE ", "HEM", "FE"),
+        (" NA ", "HEM", "N"),
+        (" CL1", "LIG", "CL"),
+        (" BR ", "LIG", "BR"),
+        ("ZN  ", "LIG", "ZN"),
+        (" C1 ", "LIG", "C"),
+        (" C1'", "C", "C"),
+    ];
+    for (name, residue, expected) in cases {
+        let text = format!("ATOM      1 {name} {residue:<4}A   1       1.000   2.000   3.000\n");
+        let imported = &import(&text, &Options::default())[0];
+        assert_eq!(names(imported.parsed.scene.as_ref().unwrap()), [expected], "{name} {residue}: {text}");
+        assert_eq!(imported.notes, ["warning: the elements of 1 particle are guessed from names of atoms"]);
+    }
+    let imported = &import("4\nc\nOH2 0 0 0\nHW1 1 0 0\nCl1 2 0 0\nOH2 3 0 0\n", &Options::default())[0];
+    assert_eq!(imported.notes, ["warning: the elements of 3 particles are guessed from names of atoms"]);
+    assert_eq!(radii(imported.parsed.scene.as_ref().unwrap()), [1.52, 1.2, 1.75, 1.52]);
+}
+
+#[test]
+fn numbers_before_coordinates_are_types_or_elements() {
+    let types = &import("3\nAtoms. Timestep: 0\n1 0 0 0\n3 1 0 0\n1 2 0 0\n", &Options::default())[0];
+    let plain = &import("2\n\n1 0 0 0\n2 1 0 0\n", &Options::default())[0];
+    let categories = Map::Categories.colors();
+    for imported in [types, plain] {
+        assert!(imported.notes.iter().any(|note| note.contains("taken for types")), "{:?}", imported.notes);
+        assert!(imported.notes.iter().any(|note| note.contains("half their mean distance")));
+        let found = colors(imported.parsed.scene.as_ref().unwrap());
+        assert_eq!(found[..2], [categories[0].to_array(), categories[1].to_array()]);
+    }
+    let water = &import(WATER.replace('O', "8").replace("H ", "1 "), &Options::default())[0];
+    assert_eq!(water.notes, ["the numbers before the coordinates are taken for atomic numbers"]);
+    assert_eq!(radii(water.parsed.scene.as_ref().unwrap()), [1.52, 1.2, 1.2]);
+}
+
+#[test]
+fn frames_without_particles_are_left_out() {
+    let empty = DUMP.replace("ATOMS\n2", "ATOMS\n0").replace("1 1 1 2 3 -0.5\n2 2 4 6 8 0.5\n", "");
+    let text = [DUMP, &empty, DUMP].concat();
+    let all = Options { frames: Frames::All, ..Options::default() };
+    let found = import(&text, &all);
+    let kept = found.iter().map(|frame| (frame.number, frame.parsed.scene.is_some(), frame.parsed.errors));
+    assert_eq!(kept.collect::<Vec<_>>(), [(1, true, 0), (2, false, 0), (3, true, 0)]);
+    assert_eq!(found[1].parsed.diagnostics[0].help.as_deref(), Some("frame 2 is left out"));
+    assert_eq!(fault_with(&empty, &Options::default()).message, "a frame without particles");
+}
+
+/// What leaves the picture of the first frame is said.
+#[test]
+fn particles_beside_the_picture_are_warned_of() {
+    let text = "2\nc\nHe -9 0 0\nHe 9 0 0\n2\nc\nHe -9 0 0\nHe 12 0 0\n2\nc\nHe -9 0 0\nHe 9 0 0\n";
+    let found = import(text, &Options { frames: Frames::All, ..Options::default() });
+    let notes: Vec<_> = found.iter().map(|frame| frame.notes.clone()).collect();
+    assert!(notes[0].is_empty() && notes[2].is_empty(), "{notes:?}");
+    assert_eq!(notes[1], ["warning: 1 particle is not whole in the picture, which fits the first frame"]);
 }
 
 #[test]
@@ -448,7 +609,8 @@ fn colors_come_from_where_they_are_asked_for() {
     assert_eq!(fault_with(TABLE, &by("name:viridis")).message, "`a` is not a number");
     assert_eq!(colors(&read("x,y,z,color\n1,2,3,#ff0000\n")), [[1.0, 0.0, 0.0]]);
     assert_eq!(colors(&read("x,y,z,r,g,b\n1,2,3,1,0.5,0\n")), [[1.0, 0.5, 0.0]]);
-    for wrong in ["", ":viridis", "q:viridis:1..1", "q:a..b", "q:categories:0..1"] {
+    assert!("255,128,0".parse::<Coloring>().unwrap_err().contains("0 to 1; this may be meant: #ff8000"));
+    for wrong in ["", "255,128,0", "-1,0,0", ":viridis", "q:viridis:1..1", "q:a..b", "q:categories:0..1"] {
         assert!(wrong.parse::<Coloring>().is_err(), "{wrong}");
     }
 }
@@ -523,6 +685,48 @@ fn intensities_sum_to_one() {
     }
 }
 
+/// The ball around all spheres is in the picture from all sides, and fills it.
+#[test]
+fn a_ball_is_seen_whole_from_all_sides() {
+    for size in [(40, 30), (30, 90)] {
+        let scene = read_with(PDB, &Options { framing: Framing::Ball, size, ..Options::default() });
+        let (low, high) = scene.spheres.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), sphere| {
+            (low.min(sphere.center - sphere.scale), high.max(sphere.center + sphere.scale))
+        });
+        let middle = low.midpoint(high);
+        assert!(middle.truncate().length() < 1e-9, "the eye looks at the middle: {middle}");
+        let reach = scene.spheres.iter().map(|sphere| (sphere.center - middle).length() + sphere.scale.x);
+        let sine = reach.fold(0.0, f64::max) / -middle.z;
+        let shorter = scene.window.top.min(scene.window.right) / scene.window.near;
+        assert!((sine.asin().tan() / shorter - 0.96).abs() < 1e-6, "{size:?}");
+    }
+}
+
+/// Seen from anywhere, lights are where they are for the first eye: to its left, above, or at itself.
+#[test]
+fn lights_turn_with_the_eye() {
+    for lighting in ["headlight", "three", "dome:5"] {
+        let options = Options { lighting: lighting.parse().unwrap(), framing: Framing::Ball, ..Options::default() };
+        let usual = import(WATER, &options).remove(0);
+        let (scene, lamps) = (usual.parsed.scene.unwrap(), usual.lamps.unwrap());
+        let (low, high) = scene.spheres.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), sphere| {
+            (low.min(sphere.center - sphere.scale), high.max(sphere.center + sphere.scale))
+        });
+        let middle = low.midpoint(high);
+        let eye = middle + DVec3::new(middle.length(), 0.0, 0.0);
+        let view = View::new(eye, Some(middle), DVec3::Y).unwrap();
+        let [right, up, back] = view.axes();
+        for (first, light) in scene.lights.iter().zip(lamps.seen_by(&view)) {
+            let seen = light.position - eye;
+            let seen = DVec3::new(right.dot(seen), up.dot(seen), back.dot(seen));
+            assert!((seen - first.position).length() < 1e-9 * high.length(), "{lighting}: {seen}");
+        }
+        assert_eq!(lamps.seen_by(&View::FILE), scene.lights);
+        let turned = read_with(WATER, &Options { view, ..options });
+        assert_eq!(turned.lights, lamps.seen_by(&view));
+    }
+}
+
 /// What a surface that faces the zenith gets of a dome of infinitely many lamps is 2/3: the mean cosine of directions that are as
 /// dense as their cosine. Few lamps come near to it, from all sides alike.
 #[test]
@@ -567,10 +771,31 @@ fn particles_are_rendered_as_imported() {
     // Scenes have none of this.
     assert_exit(&run(place, "render --device cpu --radius 2 benzene.txt -o c.ppm"), 2, "holds no particles");
     assert_exit(&run(place, "import benzene.txt"), 3, "holds no particles");
+    assert_exit(&run(place, "check --color-by 255,128,0 benzene.xyz"), 2, "#ff8000");
     assert_exit(&run(place, "render --frame all benzene.xyz -o c.ppm"), 2, "one frame");
     assert_exit(&run(place, "check --direction x --vertical x benzene.xyz"), 2, "--vertical is parallel");
     std::fs::write(place.join("bad.xyz"), "1\nc\nO 0 0 o\n").unwrap();
     assert_exit(&run(place, "render bad.xyz -o c.ppm"), 3, "bad.xyz:3:7");
+}
+
+/// The commands in the message that refuses several frames.
+#[test]
+fn several_frames_are_rendered_by_the_commands_that_are_shown() {
+    let place = tempfile::tempdir().unwrap();
+    let place = place.path();
+    let two = WATER.repeat(2) + "0\nempty\n";
+    std::fs::write(place.join("water.xyz"), two).unwrap();
+    std::fs::create_dir(place.join("folder")).unwrap();
+    let refused = run(place, "render --frame all --res 24x16 water.xyz -o c.ppm");
+    let message = String::from_utf8(refused.stderr).unwrap();
+    let commands: Vec<_> = message.lines().filter_map(|line| line.trim().strip_prefix("trueray ")).collect();
+    let [import, render] = commands[..] else { panic!("{message}") };
+    let import = import.replace("FILE", "water.xyz").replace("FOLDER", "folder") + " --res 24x16 --light headlight";
+    assert_exit(&run(place, &import), 0, "frame 3 is left out");
+    let render = render.replace("FOLDER/*.txt", "folder/0001.txt folder/0002.txt").replace("FOLDER", "folder");
+    assert_exit(&run(place, &format!("{render} --device cpu")), 0, "0002.ppm: 24 × 16");
+    std::fs::write(place.join("nothing.xyz"), "0\nempty\n").unwrap();
+    assert_exit(&run(place, "import --frame all nothing.xyz -o folder/n%d.txt"), 3, "no frame has particles");
 }
 
 #[test]

@@ -365,4 +365,10 @@ fn lists_are_kept_for_eyes_that_are_near_each_other() {
     assert!(is_same(grids[0], grids[1]) && !is_same(grids[0], grids[2]));
     assert!(!first.lights.lists.is_empty() && is_same(&first.lights.lists[0], &near.lights.lists[0]));
     assert!(first.screen.lists != near.screen.lists);
+
+    let mut lit = scene.clone();
+    lit.lights[0].position += DVec3::X;
+    let viewed = lit.viewed_again(&Settings::default(), &kept);
+    let moved = Acceleration::new(&viewed, EffectSet::ALL, Rounding::SINGLE);
+    assert!(!is_same(&first.lights.lists[0], &moved.lights.lists[0]), "a light has moved");
 }

@@ -343,7 +343,18 @@ fn frames_are_resumed_and_particles_turn() {
 
     folder.write("water.xyz", "3\n\nO 0 0 0\nH 0.96 0 0\nH -0.24 0.93 0\n");
     folder.render("water.xyz --turntable 2 --radius 0.5 --res 32x24 -o w_%d.png", 0, "2 frames");
-    folder.render("water.xyz --radius 0.5 --res 32x24 -o single.png", 0, "");
+    folder.render("water.xyz --radius 0.5 --fit ball --res 32x24 -o single.png", 0, "");
     assert_eq!(folder.picture("w_1.png"), folder.picture("single.png"));
     assert_ne!(folder.picture("w_2.png"), folder.picture("single.png"));
+
+    // The lights turn with the eye, also where frames share lists; a view of the table is the run with that eye.
+    folder.write("far.csv", "eye_x,eye_y,eye_z,at_x,at_y,at_z\n0,0,0,0,0,-9\n1,0,-18,0,0,-9\n0,0,1,0,0,-9\n");
+    for light in ["headlight", "dome:4"] {
+        let options = format!("water.xyz --radius 0.5 --light {light} --res 32x24");
+        folder.render(&format!("{options} --views far.csv -o v_%d.png"), 0, "3 frames");
+        folder.render(&format!("{options} --eye 1,0,-18 --look-at 0,0,-9 -o eye.png"), 0, "");
+        assert_eq!(folder.picture("v_2.png"), folder.picture("eye.png"), "{light}");
+        folder.render(&format!("{options} --eye 0,0,1 --look-at 0,0,-9 -o eye.png"), 0, "");
+        assert_eq!(folder.picture("v_3.png"), folder.picture("eye.png"), "{light}");
+    }
 }

@@ -106,7 +106,10 @@ impl Options {
 pub(super) fn run(args: &Args) -> Result<u8, Failure> {
     check(args)?;
     let settings = args.picture.settings()?;
-    let reading = args.particles.one_frame(args.picture.resolution())?;
+    let reading = match args.views.turntable {
+        Some(_) => args.particles.all_sides(&args.picture)?,
+        None => args.particles.one_frame(&args.picture)?,
+    };
     let timeline = args.timeline.as_deref().map(Timeline::begin);
     let start = Instant::now();
     let read = || {

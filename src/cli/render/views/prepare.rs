@@ -18,6 +18,7 @@ use crate::effects::Effects;
 use crate::engine::{Backend, Engine, Times, device_name, ms};
 use crate::film::Target;
 use crate::gpu::Gpu;
+use crate::import::Lamps;
 use crate::scene::{Scene, Window};
 use crate::settings::{Quantize, Settings};
 use crate::verify::Verify;
@@ -52,6 +53,8 @@ pub(super) struct Source {
     size: [u32; 2],
     /// The scene file's own size.
     file_size: [u32; 2],
+    /// Lights that turn with the eye, where it has such.
+    lamps: Option<Lamps>,
     /// What its frames share.
     kept: KeptLists,
     /// Reading and parsing; of the first frame that shows it.
@@ -61,10 +64,10 @@ pub(super) struct Source {
 impl Source {
     /// With a size in place of its own, where there is one.
     pub(super) fn new(loaded: Loaded, size: Option<(u32, u32)>) -> Self {
-        let Loaded { name, scene, parse_time, .. } = loaded;
+        let Loaded { name, scene, lamps, parse_time, .. } = loaded;
         let file_size = [scene.width, scene.height];
         let size = size.map_or(file_size, <[u32; 2]>::from);
-        Self { name, window: scene.window, size, file_size, scene, kept: KeptLists::default(), parse_time }
+        Self { name, window: scene.window, size, file_size, scene, lamps, kept: KeptLists::default(), parse_time }
     }
 }
 
@@ -110,9 +113,12 @@ impl<'a> Preparer<'a> {
             None => &mut self.own,
             Some(path) => other(&mut self.other, path, args)?,
         };
-        let Source { name, scene, .. } = source;
+        let Source { name, scene, lamps, .. } = source;
         let settings = Settings { view: frame.view, ..*self.settings };
         frame.apply(scene, source.window, source.size);
+        if let Some(lamps) = lamps {
+            scene.lights = lamps.seen_by(&frame.view);
+        }
         if scene.window != source.window {
             scene.check().map_err(|error| Failure::new(SCENE, error.to_string()))?;
         }
@@ -186,7 +192,7 @@ fn other<'s>(kept: &'s mut Option<(PathBuf, Source)>, path: &Path, args: &Args) 
     if kept.as_ref().is_none_or(|(known, _)| known != path) {
         // The last one goes before the next takes memory.
         *kept = None;
-        let reading = args.particles.one_frame(args.picture.resolution())?;
+        let reading = args.particles.one_frame(&args.picture)?;
         let loaded = Loaded::read(path, &reading, args.quiet)?;
         *kept = Some((path.to_owned(), Source::new(loaded, args.picture.resolution())));
     }
