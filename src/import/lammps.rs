@@ -110,7 +110,10 @@ impl Lammps {
             return Ok(cell);
         }
         Err(stop(log, source.end(), || {
-            Detail::new("a box that has no size, or is beyond what a number can hold", "expected upper bounds above the lower ones")
+            Detail::new(
+                "a box that has no size, or is beyond what a number can hold",
+                "expected upper bounds above the lower ones",
+            )
         }))
     }
 

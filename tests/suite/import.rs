@@ -255,6 +255,8 @@ fn malformed_xyz_is_refused_where_it_is_wrong() {
         ("1\nProperties=pos:R\n0 0 0\n", 2, 12, "pos:R", "`pos:R` is no property"),
         ("1\nProperties=a:S:1:b:R:1\nO 1\n", 2, 1, "Properties=a:S:1:b:R:1", "no columns of coordinates among a, b"),
         ("1\nLattice=\"1 0 x\" \nO 0 0 0\n", 2, 14, "x", "`x` is not a number"),
+        ("1\nc\nO 0 0 0\nO 1 0 0\n", 4, 1, "O 1 0 0", "`O 1 0 0` is no number of atoms"),
+        ("2\nc\nC 0 0 1e17\nO 1 0 0\n", 4, 8, "end of line", "the particles of frame 1 reach too far"),
         ("1\nLattice=\"1 0 0\" \nO 0 0 0\n", 2, 10, "1 0 0", "a lattice of 3 numbers"),
         ("1\nProperties=species:S:1:pos:R:3\nO 0 0 0 1\n", 3, 10, "end of line", "5 fields in a row of 4"),
     ]);
@@ -276,6 +278,9 @@ fn malformed_dumps_are_refused_where_they_are_wrong() {
     assert_faults(&[
         (&DUMP[..DUMP.find("ITEM: ATOMS").unwrap()], 8, 5, "end of file", "ends before the atoms"),
         (&with("2 2 4 6 8 0.5\n", ""), 10, 15, "end of file", "after 1 of 2 atoms"),
+        (&with("0 10\n0 10\n0 10", "0 10\n0 10\n10 0"), 8, 5, "end of line", "a box that has no size"),
+        (&with("0 10\n0 10\n0 10", "-1e308 1e308\n0 1\n0 1"), 8, 4, "end of line", "beyond what a number can hold"),
+        (&with("ATOMS\n2", "ATOMS\n1"), 11, 1, "2 2 4 6 8 0.5", "`2 2 4 6 8 0.5` is no item"),
         (&with("pp pp pp\n0 10", "pp pp pp\n0"), 6, 2, "end of line", "1 field in a bound"),
         (&with("0 10\n0 10\n0 10", "0 10\n0 ten\n0 10"), 7, 3, "ten", "`ten` is not a number"),
         (&with("ATOMS\n2\n", "ATOMS\n-2\n"), 4, 1, "-2", "`-2` is no number of atoms"),
@@ -289,6 +294,18 @@ fn malformed_dumps_are_refused_where_they_are_wrong() {
 }
 
 #[test]
+fn structures_may_have_comments_in_loops_and_models_without_an_end() {
+    let loops = "data_X\nloop_\n_atom_site.type_symbol\n# where\n_atom_site.Cartn_x\n\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n\
+                 # chain A\nN 0 0 0\n# chain B\nC 1 1 1\n\nC 2 2 2\n#\nloop_\n_other.id\n1\n";
+    assert_eq!(names(&read(loops)), ["N", "C", "C"]);
+    let atom = "ATOM      1  N   ALA A   1      11.104   6.134  -6.504  1.00  0.00           N  \n";
+    let models = format!("MODEL 1\n{atom}MODEL 2\n{atom}{atom}");
+    let frames = import(models, &Options { frames: Frames::All, ..Options::default() });
+    let spheres: Vec<_> = frames.iter().map(|frame| frame.parsed.scene.as_ref().unwrap().spheres.len()).collect();
+    assert_eq!(spheres, [1, 2]);
+}
+
+#[test]
 fn malformed_structures_are_refused_where_they_are_wrong() {
     assert_faults(&[
         (&PDB.replace("   6.500", "   6.5x0"), 3, 42, "6.5x0", "`6.5x0` is not a number"),
@@ -297,7 +314,7 @@ fn malformed_structures_are_refused_where_they_are_wrong() {
         (&CIF.replace("1.5 2 3 'a b' 1", "1.5 2 ? x 1"), 16, 11, "?", "`?` is not a number"),
         (&CIF.replace("'a b' 1", "'a b'"), 16, 18, "end of line", "6 values in a row of 7"),
         ("data_X\n_atom_site.id 1\n", 2, 1, "_atom_site.id 1", "_atom_site is no loop"),
-        ("data_X\nloop_\n_atom_site.id\n#\n", 3, 14, "end of line", "no row of _atom_site"),
+        ("data_X\nloop_\n_atom_site.id\n#\n", 4, 2, "end of line", "no row of _atom_site"),
         ("data_X\n_cell.a 1\n", 2, 10, "end of file", "ends before its first frame"),
     ]);
 }
