@@ -146,6 +146,7 @@ impl Film {
 
     /// Takes the next rows: 3 bytes a pixel, and colours where the engine has them.
     pub(super) fn write(&mut self, rgb: &[u8], linear: &[Linear]) -> Result<(), OutputError> {
+        let _span = tracing::info_span!("write rows").entered();
         match self {
             Self::Levels(writer) => writer.write_rows(rgb),
             Self::Linear(picture, _) => {

@@ -300,7 +300,6 @@ fn render_one(
             let Choice { density, fill } = *choice;
             let samples = Samples::new((width, height), &density)?;
             let picture = render_partial(engine, backend, &samples, fill, |part| progress.set(part))?;
-            let _span = tracing::info_span!("write rows").entered();
             let start = Instant::now();
             writer.write(&picture.rgb, &[])?;
             beside.add(&picture.rgb);
@@ -309,7 +308,6 @@ fn render_one(
             picture.not_finite
         }
         Renderer::Whole(engine) => render_bands(engine, |band| {
-            let _span = tracing::info_span!("write rows").entered();
             let start = Instant::now();
             writer.write(band.rgb, band.linear)?;
             write_time += start.elapsed();

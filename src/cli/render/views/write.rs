@@ -86,7 +86,6 @@ impl<'a> Writer<'a> {
             }
             Step::Rows { rgb, linear } => {
                 let Some(File { number, path, mut writer, took }) = self.file.take() else { return };
-                let _span = tracing::info_span!("write rows").entered();
                 let start = Instant::now();
                 let written = writer.write(&rgb, &linear).map(|()| writer);
                 let written = written.map_err(|error| Failure::from(error).of(&frame_name(number)));
