@@ -451,7 +451,7 @@ fn elements_are_guessed_from_names_of_atoms() {
         ("1HB ", "ALA", "H"),
         (" OH2", "TIP3", "O"),
         (" CA ", "CA", "CA"),
-        ("NA  ", "NA+", "NA"),
+        (" NA ", "NA+", "NA"),
         (" NA ", "NA", "NA"),
         ("CL- ", "CL-", "CL"),
         (" CL ", "CL", "CL"),
