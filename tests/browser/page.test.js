@@ -457,13 +457,13 @@ test('it is readable in both themes, on a phone and on a desk', async () => {
     await page.emulateMedia({ colorScheme });
     for (const [width, height] of [[390, 844], [1440, 900]]) {
       await page.setViewportSize({ width, height });
-      await screenshot(`${colorScheme}-${width}`);
       assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `${width}: wider than the window`);
-      const { box, bar } = await page.evaluate(() => ({
-        box: document.getElementById('picture').getBoundingClientRect().toJSON(),
-        bar: document.getElementById('bar').getBoundingClientRect().toJSON(),
-      }));
-      assert.ok(box.left >= 0 && box.right <= width && box.bottom <= bar.top, JSON.stringify([box, bar]));
+      // The page is laid out anew in the frame after.
+      await page.waitForFunction(() => {
+        const [box, bar] = ['picture', 'bar'].map((id) => document.getElementById(id).getBoundingClientRect());
+        return box.left >= 0 && box.right <= innerWidth && box.bottom <= bar.top;
+      });
+      await screenshot(`${colorScheme}-${width}`);
     }
     const colors = await page.evaluate(() => Object.fromEntries(['aside', 'dt', 'dd', 'h2', '#scale', 'button', '.cost', 'small', 'pre']
       .map((name) => [name, getComputedStyle(document.querySelector(name))]).map(([name, style]) => [name, [style.color, style.backgroundColor]])));
