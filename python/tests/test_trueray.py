@@ -28,7 +28,8 @@ def test_a_file_is_rendered_as_the_command_line_does() -> None:
     file, golden = (SCENES / "basic" / f"ellipsoid.{ending}" for ending in ["txt", "golden.png"])
     whole = [trueray.Scene.from_file(file), trueray.Scene.from_text(file.read_text())]
     assert whole[0].size == (181, 149)
-    assert np.array_equal(*[trueray.render(scene, device="cpu") for scene in whole])
+    from_file, from_text = (trueray.render(scene, device="cpu") for scene in whole)
+    assert np.array_equal(from_file, from_text)
     scene = trueray.Scene.from_text(file.read_text().replace("RES 181 149", "RES 61 50"))
     found = trueray.compare(trueray.render(scene, device="cpu"), golden, scene, device="cpu")
     assert (found.differing, found.max_level, found.mean, found.unexplained) == (0, 0, 0.0, 0)
