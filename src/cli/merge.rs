@@ -23,7 +23,8 @@ pub(super) struct Args {
     /// File format: p6, p3 or png; without it the file name's ending decides
     #[arg(long, value_name = "FORMAT", help_heading = "Output")]
     format: Option<Format>,
-    /// Take parts that different devices have rendered, whose pixels may round differently. Certified parts need no leave
+    /// Take parts that different devices have rendered at the same tier, whose pixels may round differently. Certified parts and those of
+    /// the CPU reference need no leave
     #[arg(long, help_heading = "Picture file")]
     allow_mixed_devices: bool,
     /// Print errors only
