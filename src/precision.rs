@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::brightness::{Brightness, Scalar};
+use crate::census::CHUNK;
 use crate::effects::{Effect, Effects};
 use crate::limits;
 use crate::scene::Scene;
@@ -16,7 +17,7 @@ use crate::viewed::ViewedScene;
 mod outline;
 mod share;
 
-use share::Shares;
+use share::{LargestSpheres, Shares};
 
 /// A kernel of the GPU path, by what it promises.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
@@ -182,24 +183,34 @@ impl Extreme {
 
 /// Pairs of spheres are searched for nested surfaces up to this many spheres; beyond, each against its successor.
 const MAX_PAIRWISE: usize = 2000;
-/// Spheres that one thread looks at in turn.
-const CHUNK: usize = 4096;
+/// Nested spheres are no farther apart, in radii.
+const CLOSE: f64 = 0.1;
 
 impl Demand {
     /// What `viewed` demands where `effects` are simulated.
     pub fn of(viewed: &ViewedScene, effects: &Effects) -> Self {
         // The brightness aside, all of it is the same in any units: in these no square leaves the range.
         let scene = viewed.scene();
-        let (brightness, reach) = (Brightness::of(scene, effects), limits::reach(scene, effects));
+        let (brightness, reach) = (Brightness::of(viewed, effects), limits::reach(viewed, effects));
         let count = scene.spheres.len();
         let chunk = |chunk: usize| {
-            let mut demand = Self::none();
-            (chunk * CHUNK..count.min((chunk + 1) * CHUNK)).for_each(|index| demand.add(scene, effects, reach, index));
-            demand
+            let mut found = Found::none();
+            for index in chunk * CHUNK..count.min((chunk + 1) * CHUNK) {
+                found.demand.add(scene, effects, reach, index);
+                found.largest.add(index, &scene.spheres[index]);
+                if count > MAX_PAIRWISE && index > 0 {
+                    found.nested.extend(gap_of(scene, index - 1, index));
+                }
+            }
+            found
         };
-        let demand = (0..count.div_ceil(CHUNK)).into_par_iter().map(chunk).reduce(Self::none, |a, b| a.and(&b));
+        let found = (0..count.div_ceil(CHUNK)).into_par_iter().map(chunk).reduce(Found::none, Found::and);
+        let Found { demand, largest, mut nested } = found;
+        if count <= MAX_PAIRWISE {
+            nested = nested_pairs(scene);
+        }
         Self {
-            share: Shares::new(scene, viewed.settings().view.axes(), effects).estimate(&nested(scene)),
+            share: Shares::new(scene, viewed.settings().view.axes(), effects).estimate(&largest, &nested),
             brightness: Extreme { value: brightness.greatest(), sphere: brightness.sphere },
             ..demand
         }
@@ -322,20 +333,37 @@ impl Demand {
     }
 }
 
-/// Nearly concentric spheres whose radii differ by little, each with the gap in world units; equal ones are one surface.
-fn nested(scene: &Scene) -> Vec<(usize, f64)> {
-    const CLOSE: f64 = 0.1;
-    let spheres = &scene.spheres;
-    let gap_of = |i: usize, j: usize| {
-        let (a, b) = (&spheres[i], &spheres[j]);
-        let size = a.scale.abs().max_element();
-        let offset = (a.center - b.center).length();
-        let gap = (a.scale.abs() - b.scale.abs()).abs().max_element().max(offset);
-        (gap < CLOSE * size && gap > 0.0).then_some((j, gap))
-    };
-    if spheres.len() > MAX_PAIRWISE {
-        return (1..spheres.len()).filter_map(|j| gap_of(j - 1, j)).collect();
+/// What one look at each sphere finds.
+struct Found {
+    demand: Demand,
+    largest: LargestSpheres,
+    /// Of many spheres: those that are nested with the one before them.
+    nested: Vec<(usize, f64)>,
+}
+
+impl Found {
+    fn none() -> Self {
+        Self { demand: Demand::none(), largest: LargestSpheres::default(), nested: Vec::new() }
     }
+
+    fn and(mut self, later: Self) -> Self {
+        self.nested.extend(later.nested);
+        Self { demand: self.demand.and(&later.demand), largest: self.largest.plus(later.largest), ..self }
+    }
+}
+
+/// The second of two nearly concentric spheres whose radii differ by little, with the gap in world units; equal ones are one surface.
+fn gap_of(scene: &Scene, i: usize, j: usize) -> Option<(usize, f64)> {
+    let (a, b) = (&scene.spheres[i], &scene.spheres[j]);
+    let size = a.scale.abs().max_element();
+    let offset = (a.center - b.center).length();
+    let gap = (a.scale.abs() - b.scale.abs()).abs().max_element().max(offset);
+    (gap < CLOSE * size && gap > 0.0).then_some((j, gap))
+}
+
+/// All such pairs.
+fn nested_pairs(scene: &Scene) -> Vec<(usize, f64)> {
+    let spheres = &scene.spheres;
     // Only spheres whose centres are close along x can be.
     let mut order: Vec<usize> = (0..spheres.len()).collect();
     order.sort_unstable_by(|&i, &j| spheres[i].center.x.total_cmp(&spheres[j].center.x));
@@ -345,7 +373,9 @@ fn nested(scene: &Scene) -> Vec<(usize, f64)> {
         order[at + 1..].iter().copied().take_while(move |&j| spheres[j].center.x <= end)
     };
     (0..order.len())
-        .flat_map(|at| close_to(at).filter_map(|j| gap_of(order[at].min(j), order[at].max(j))).collect::<Vec<_>>())
+        .flat_map(|at| {
+            close_to(at).filter_map(|j| gap_of(scene, order[at].min(j), order[at].max(j))).collect::<Vec<_>>()
+        })
         .collect()
 }
 
