@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use crate::brightness::Parts;
 use crate::effects::COMMON_SIZES;
 use crate::geometry::extent;
+use crate::precision::Extreme;
 use crate::scene::{Scene, Sphere};
 
 /// Spheres that one thread looks at in turn.
@@ -58,7 +59,7 @@ impl Extents {
 }
 
 /// What no eye changes. Spheres are named by their indices.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Census {
     /// AMBIENT and all lights, as [`Parts::light`] has them.
     light: [f64; 2],
@@ -72,8 +73,13 @@ pub(crate) struct Census {
     pub(crate) uneven: Option<usize>,
     /// The first whose size is none of [`COMMON_SIZES`].
     pub(crate) uncommon: Option<usize>,
-    /// The least semi-axis.
-    pub(crate) least: f64,
+    /// The least semi-axis, and the greatest ratio of two.
+    pub(crate) least: Extreme,
+    pub(crate) axis_ratio: Extreme,
+    /// The greatest exponent of a highlight.
+    pub(crate) exponent: Extreme,
+    /// The greatest index of refraction, or reciprocal of one, of what one looks through.
+    pub(crate) bending: Extreme,
     /// What colours add up to.
     pub(crate) brightness: Parts,
 }
@@ -88,15 +94,18 @@ impl Census {
             mirrors: [None; 2],
             uneven: None,
             uncommon: None,
-            least: f64::INFINITY,
+            least: Extreme::NOTHING_LESS,
+            axis_ratio: Extreme::NONE,
+            exponent: Extreme::NONE,
+            bending: Extreme::NONE,
             brightness: Parts::NONE,
         };
         let chunk = |(chunk, spheres): (usize, &[Sphere])| {
-            let mut census = none.clone();
+            let mut census = none;
             (chunk * CHUNK..).zip(spheres).for_each(|(index, sphere)| census.add(index, sphere));
             census
         };
-        scene.spheres.par_chunks(CHUNK).enumerate().map(chunk).reduce(|| none.clone(), Self::and)
+        scene.spheres.par_chunks(CHUNK).enumerate().map(chunk).reduce(|| none, Self::and)
     }
 
     /// Whether it is also that of a scene with the same spheres.
@@ -117,22 +126,33 @@ impl Census {
         first(&mut self.mirrors[at], sphere.kr != 0.0);
         first(&mut self.uneven, scale != DVec3::splat(scale.x));
         first(&mut self.uncommon, !COMMON_SIZES.contains(&scale.x));
-        self.least = self.least.min(scale.min_element());
+        let (short, long) = (scale.min_element(), scale.max_element());
+        self.least.lower(short, index);
+        self.axis_ratio.raise(long / short, index);
+        if sphere.ks != 0.0 {
+            self.exponent.raise(sphere.n, index);
+        }
+        if sphere.kt != 0.0 {
+            self.bending.raise(sphere.eta.max(1.0 / sphere.eta), index);
+        }
         self.brightness = self.brightness.greater(Parts::of(index, sphere, self.light));
     }
 
     /// Of these spheres and of `later` ones.
-    fn and(self, later: Self) -> Self {
+    fn and(mut self, later: Self) -> Self {
         let mut mirrors = self.mirrors.into_iter().chain(later.mirrors).flatten();
+        self.least.lower_to(later.least);
+        self.axis_ratio.raise_to(later.axis_ratio);
+        self.exponent.raise_to(later.exponent);
+        self.bending.raise_to(later.bending);
         Self {
-            light: self.light,
             glass: self.glass.or(later.glass),
             shiny: self.shiny.or(later.shiny),
             mirrors: [mirrors.next(), mirrors.next()],
             uneven: self.uneven.or(later.uneven),
             uncommon: self.uncommon.or(later.uncommon),
-            least: self.least.min(later.least),
             brightness: self.brightness.greater(later.brightness),
+            ..self
         }
     }
 }
@@ -162,7 +182,8 @@ mod tests {
         let census = Census::of(&scene);
         assert_eq!([census.glass, census.shiny, census.uneven], [Some(5000); 3]);
         assert_eq!((census.mirrors, census.uncommon), ([Some(5000), Some(9000)], Some(9002)));
-        assert_eq!(census.least, 1e-12);
+        assert_eq!(census.least, Extreme { value: 1e-12, sphere: Some(5000) });
+        assert!(census.axis_ratio.value > 1e11 && census.exponent.sphere == Some(5000) && census.bending.value == 1.0);
         let mut none = Parts::NONE;
         (0..).zip(&scene.spheres).for_each(|(index, s)| none = none.greater(Parts::of(index, s, Parts::light(&scene))));
         assert_eq!(census.brightness, none);

@@ -539,7 +539,7 @@ mod tests {
                 sphere.scale = random.in_box(0.5) + DVec3::splat(0.6);
                 scene.spheres.push(sphere);
             }
-            let view = View::new(random.in_box(1.0), Some(at), random.unit()).unwrap();
+            let view = View::new(random.in_box(1.0), Some(at), random.unit()).expect("it is far");
             let viewed = scene.viewed_by(&Settings { view, ..Settings::default() }, None);
             if all_beyond_image_plane(&viewed) {
                 beyond += 1;

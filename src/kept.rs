@@ -70,6 +70,17 @@ mod tests {
     use crate::settings::Settings;
     use crate::view::View;
 
+    #[test]
+    fn a_census_is_of_its_units() {
+        let mut scene = Scene::new(crate::scene::Window::default(), 8, 8);
+        scene.spheres.push(Sphere::new(DVec3::Z, 4.0, DVec3::ONE));
+        let kept = Kept::default();
+        assert_eq!(kept.census(&scene, 1.0).least.value, 4.0);
+        scene.spheres[0].scale *= 0.5;
+        assert_eq!(kept.census(&scene, 1.0).least.value, 4.0, "it is kept");
+        assert_eq!(kept.census(&scene, 0.5).least.value, 2.0);
+    }
+
     /// Pairs of spheres that are the same surface, or become it where an eye so far away rounds their places.
     #[test]
     fn surfaces_are_shared_for_each_eye_as_without_what_is_kept() {
@@ -82,7 +93,7 @@ mod tests {
         let kept = Kept::default();
         let mut shared = Vec::new();
         for eye in [0.0, 0.1, 3.0, 1e3, -1e5, 0.3] {
-            let view = View::new(DVec3::new(eye, 2.0 * eye, eye), None, DVec3::Y).unwrap();
+            let view = View::new(DVec3::new(eye, 2.0 * eye, eye), None, DVec3::Y).expect("a view");
             let viewed = scene.viewed_again(&Settings { view, ..Settings::default() }, &kept);
             let indices = viewed.shape_indices(true);
             assert_eq!(indices, shape_indices(&viewed.scene().spheres, true), "eye {eye}");

@@ -45,7 +45,7 @@ pub fn reach(viewed: &ViewedScene, effects: &Effects) -> f64 {
 /// The first sphere whose least semi-axis is small, in words.
 fn name_of_small(viewed: &ViewedScene, is_small: impl Fn(f64) -> bool) -> Option<String> {
     // Where the least one is not, none is.
-    let scene = Some(viewed.scene()).filter(|_| is_small(viewed.census().least))?;
+    let scene = Some(viewed.scene()).filter(|_| is_small(viewed.census().least.value))?;
     let first = scene.spheres.iter().position(|s| is_small(s.scale.abs().min_element()))?;
     Some(scene.sphere_names.in_words("sphere", first))
 }

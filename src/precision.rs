@@ -11,7 +11,7 @@ use crate::brightness::{Brightness, Scalar};
 use crate::census::CHUNK;
 use crate::effects::{Effect, Effects};
 use crate::limits;
-use crate::scene::Scene;
+use crate::scene::{Scene, Sphere};
 use crate::viewed::ViewedScene;
 
 mod outline;
@@ -168,15 +168,34 @@ pub struct Extreme {
 }
 
 impl Extreme {
-    fn raise(&mut self, value: f64, sphere: usize) {
+    /// What is raised, of no sphere.
+    pub(crate) const NONE: Self = Self { value: 0.0, sphere: None };
+    /// What is lowered, of no sphere.
+    pub(crate) const NOTHING_LESS: Self = Self { value: f64::INFINITY, sphere: None };
+
+    pub(crate) fn raise(&mut self, value: f64, sphere: usize) {
         if value > self.value {
             *self = Self { value, sphere: Some(sphere) };
         }
     }
 
-    fn lower(&mut self, value: f64, sphere: usize) {
+    pub(crate) fn lower(&mut self, value: f64, sphere: usize) {
         if value < self.value {
             *self = Self { value, sphere: Some(sphere) };
+        }
+    }
+
+    /// To that of later spheres.
+    pub(crate) fn raise_to(&mut self, later: Self) {
+        if later.value > self.value {
+            *self = later;
+        }
+    }
+
+    /// Likewise.
+    pub(crate) fn lower_to(&mut self, later: Self) {
+        if later.value < self.value {
+            *self = later;
         }
     }
 }
@@ -190,14 +209,17 @@ impl Demand {
     /// What `viewed` demands where `effects` are simulated.
     pub fn of(viewed: &ViewedScene, effects: &Effects) -> Self {
         // The brightness aside, all of it is the same in any units: in these no square leaves the range.
-        let scene = viewed.scene();
+        let (scene, census) = (viewed.scene(), viewed.census());
         let (brightness, reach) = (Brightness::of(viewed, effects), limits::reach(viewed, effects));
+        let lights = scene.lights.iter().filter(|_| effects.set.has(Effect::Shadows)).map(|light| light.position);
+        let origins: Vec<DVec3> = std::iter::once(DVec3::ZERO).chain(lights).collect();
         let count = scene.spheres.len();
         let chunk = |chunk: usize| {
             let mut found = Found::none();
             for index in chunk * CHUNK..count.min((chunk + 1) * CHUNK) {
-                found.demand.add(scene, effects, reach, index);
-                found.largest.add(index, &scene.spheres[index]);
+                let sphere = &scene.spheres[index];
+                found.add_nearness(index, sphere, &origins);
+                found.largest.add(index, sphere);
                 if count > MAX_PAIRWISE && index > 0 {
                     found.nested.extend(gap_of(scene, index - 1, index));
                 }
@@ -205,76 +227,20 @@ impl Demand {
             found
         };
         let found = (0..count.div_ceil(CHUNK)).into_par_iter().map(chunk).reduce(Found::none, Found::and);
-        let Found { demand, largest, mut nested } = found;
+        let Found { nearness, largest, mut nested } = found;
         if count <= MAX_PAIRWISE {
             nested = nested_pairs(scene);
         }
+        let on = |effect, extreme| if effects.set.has(effect) { extreme } else { Extreme::NONE };
         Self {
             share: Shares::new(scene, viewed.settings().view.axes(), effects).estimate(&largest, &nested),
+            nearness,
+            axis_ratio: census.axis_ratio,
+            exponent: on(Effect::Specular, census.exponent),
+            bending: on(Effect::Refraction, census.bending),
+            reach: Extreme { value: reach / census.least.value, ..census.least },
             brightness: Extreme { value: brightness.greatest(), sphere: brightness.sphere },
-            ..demand
         }
-    }
-
-    /// Of no sphere.
-    fn none() -> Self {
-        let least = Extreme { value: 0.0, sphere: None };
-        Self {
-            share: [least; 3],
-            nearness: Extreme { value: f64::INFINITY, sphere: None },
-            axis_ratio: least,
-            exponent: least,
-            bending: least,
-            reach: least,
-            brightness: least,
-        }
-    }
-
-    /// What a sphere demands by itself.
-    fn add(&mut self, scene: &Scene, effects: &Effects, reach: f64, index: usize) {
-        let sphere = &scene.spheres[index];
-        let scale = sphere.scale.abs();
-        let (short, long) = (scale.min_element(), scale.max_element());
-        self.axis_ratio.raise(long / short, index);
-        self.reach.raise(reach / short, index);
-        if effects.set.has(Effect::Specular) && sphere.ks != 0.0 {
-            self.exponent.raise(sphere.n, index);
-        }
-        if effects.set.has(Effect::Refraction) && sphere.kt != 0.0 {
-            self.bending.raise(sphere.eta.max(1.0 / sphere.eta), index);
-        }
-        let mut add_nearness = |origin: DVec3| {
-            let from_center = origin - sphere.center;
-            // What is farther away is not near.
-            if from_center.length_squared() <= 4.0 * long * long {
-                let height = (from_center / scale).length() - 1.0;
-                let coordinates = sphere.center.length() + origin.length() + long;
-                self.nearness.lower(height.abs() * short / coordinates, index);
-            }
-        };
-        add_nearness(DVec3::ZERO);
-        if effects.set.has(Effect::Shadows) {
-            for light in &scene.lights {
-                add_nearness(light.position);
-            }
-        }
-    }
-
-    /// Of the spheres of both.
-    fn and(mut self, other: &Self) -> Self {
-        let greater = |mine: &mut Extreme, other: Extreme| {
-            if let Some(sphere) = other.sphere {
-                mine.raise(other.value, sphere);
-            }
-        };
-        greater(&mut self.axis_ratio, other.axis_ratio);
-        greater(&mut self.exponent, other.exponent);
-        greater(&mut self.bending, other.bending);
-        greater(&mut self.reach, other.reach);
-        if let Some(sphere) = other.nearness.sphere {
-            self.nearness.lower(other.nearness.value, sphere);
-        }
-        self
     }
 
     /// The first demand that `tier` does not cover, in words; `None` where it covers all.
@@ -333,9 +299,9 @@ impl Demand {
     }
 }
 
-/// What one look at each sphere finds.
+/// What one look at each sphere finds that each eye sees otherwise.
 struct Found {
-    demand: Demand,
+    nearness: Extreme,
     largest: LargestSpheres,
     /// Of many spheres: those that are nested with the one before them.
     nested: Vec<(usize, f64)>,
@@ -343,12 +309,28 @@ struct Found {
 
 impl Found {
     fn none() -> Self {
-        Self { demand: Demand::none(), largest: LargestSpheres::default(), nested: Vec::new() }
+        Self { nearness: Extreme::NOTHING_LESS, largest: LargestSpheres::default(), nested: Vec::new() }
+    }
+
+    /// How near the origins of rays, the eye and lights that cast shadows, are to the surface of a sphere.
+    fn add_nearness(&mut self, index: usize, sphere: &Sphere, origins: &[DVec3]) {
+        let scale = sphere.scale.abs();
+        let (short, long) = (scale.min_element(), scale.max_element());
+        for &origin in origins {
+            let from_center = origin - sphere.center;
+            // What is farther away is not near.
+            if from_center.length_squared() <= 4.0 * long * long {
+                let height = (from_center / scale).length() - 1.0;
+                let coordinates = sphere.center.length() + origin.length() + long;
+                self.nearness.lower(height.abs() * short / coordinates, index);
+            }
+        }
     }
 
     fn and(mut self, later: Self) -> Self {
         self.nested.extend(later.nested);
-        Self { demand: self.demand.and(&later.demand), largest: self.largest.plus(later.largest), ..self }
+        self.nearness.lower_to(later.nearness);
+        Self { largest: self.largest.plus(later.largest), ..self }
     }
 }
 
@@ -356,7 +338,12 @@ impl Found {
 fn gap_of(scene: &Scene, i: usize, j: usize) -> Option<(usize, f64)> {
     let (a, b) = (&scene.spheres[i], &scene.spheres[j]);
     let size = a.scale.abs().max_element();
-    let offset = (a.center - b.center).length();
+    let way = a.center - b.center;
+    // Most are far apart, and no root is needed to see that.
+    if way.abs().max_element() > CLOSE * size {
+        return None;
+    }
+    let offset = way.length();
     let gap = (a.scale.abs() - b.scale.abs()).abs().max_element().max(offset);
     (gap < CLOSE * size && gap > 0.0).then_some((j, gap))
 }

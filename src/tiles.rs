@@ -303,7 +303,7 @@ mod tests {
             let Some(found) = ball_slopes(center.to_array(), semi_axes, 1.0) else { continue };
             balls += 1;
             for (found, expected) in found.into_iter().zip(general) {
-                let expected = expected.unwrap();
+                let expected = expected.expect("it is seen");
                 // The nearer to the plane of the eye, the longer are both.
                 let room = 1e-9 * (1.0 + expected[0].abs().max(expected[1].abs()));
                 let is_same = found.iter().zip(expected).all(|(a, b)| (a - b).abs() <= room);

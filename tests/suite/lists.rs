@@ -385,6 +385,7 @@ fn lists_are_kept_for_eyes_that_are_near_each_other() {
     assert!(is_same(grids[0], grids[1]) && !is_same(grids[0], grids[2]));
     assert!(!first.lights.lists.is_empty() && is_same(&first.lights.lists[0], &near.lights.lists[0]));
     assert!(first.screen.lists != near.screen.lists);
+    assert!(first.room.is_some() && first.room == near.room && first.room != far.room, "the same place in tables");
 
     let kept = Kept::default();
     let mut lit = scene.clone();

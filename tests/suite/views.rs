@@ -133,17 +133,47 @@ fn assert_frame_is_that_of_a_single_run(gpu: &Gpu, number: u32, kept: &Kept) {
     scene.ambient *= f64::from(1 + number / 6 % 2);
     scene.lights[0].intensity *= f64::from(1 + number / 5 % 2);
     let x = 0.25 * f64::from(number);
-    let settings = if number / 4 % 2 == 0 { Settings::classic() } else { Settings::exact() };
+    let settings = if (number / 4).is_multiple_of(2) { Settings::classic() } else { Settings::exact() };
     let settings = Settings { view: view([x, 0.2, x], Some([0.0, 0.0, -10.0])), ..settings };
     let request = if number % 7 == 6 { "-ambient,-shadows" } else { "auto" }.parse().unwrap();
-    let tier = Tier::ALL[number as usize / 3 % 3];
+    let device = |tier| Backend::Device(gpu, tier);
+    let certified = Backend::Certified(gpu, Tier::Fast);
+    let backend = [device(Tier::Fast), certified, device(Tier::Robust), device(Tier::Double)][number as usize / 3 % 4];
     let picture = |viewed| {
         let effects = Effects::requested(&viewed, &request);
-        let mut engine = Engine::new(Backend::Device(gpu, tier), viewed, &effects).unwrap();
+        let mut engine = Engine::new(backend, viewed, &effects).unwrap();
         render_picture(&mut engine).unwrap().0
     };
     let single = picture(scene.viewed(&settings));
-    assert!(picture(scene.viewed_again(&settings, kept)) == single, "frame {number} at {tier}");
+    assert!(picture(scene.viewed_again(&settings, kept)) == single, "frame {number}, {backend:?}");
+}
+
+/// Eyes so far apart that kernels have other units for them: nothing that has a length goes from one to the other.
+#[test]
+fn frames_in_other_units_share_no_length() {
+    let Some(gpu) = gpu("frames_in_other_units_share_no_length") else { return };
+    let mut scene = scene_of(SCENE);
+    (scene.width, scene.height) = (40, 32);
+    for sphere in &mut scene.spheres {
+        (sphere.center, sphere.scale) = (sphere.center * 1.4e8, sphere.scale * 1.4e8);
+    }
+    scene.lights[0].position *= 1.4e8;
+    let device = |tier| Backend::Device(&gpu, tier);
+    for backend in [device(Tier::Fast), device(Tier::Double), Backend::Reference] {
+        let (kept, mut factors) = (Kept::default(), Vec::new());
+        for z in [1e6, 3e8, 2e6, 3.1e8, 3e8] {
+            let settings = Settings { view: view([0.0, 0.0, z], None), ..Settings::default() };
+            let picture = |viewed| {
+                let effects = Effects::of(&viewed);
+                render_picture(&mut Engine::new(backend, viewed, &effects).unwrap()).unwrap().0
+            };
+            let single = picture(scene.viewed(&settings));
+            factors.push(scene.viewed(&settings).factor());
+            assert!(picture(scene.viewed_again(&settings, &kept)) == single, "{backend:?}, z {z}");
+            assert!(single.chunks(3).any(|pixel| pixel != &single[..3]), "z {z}: nothing is seen");
+        }
+        assert!(factors[0] == factors[2] && factors[0] != factors[1], "{factors:?}");
+    }
 }
 
 /// Each frame is prepared while the one before it is still to be rendered, as in a film; some eyes come back.
