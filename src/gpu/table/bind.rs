@@ -1,32 +1,15 @@
 //! The buffers and textures of a scene, and whether a device holds them.
 
 use super::pack::Packed;
-use super::pool::{Basis, TableSet};
+use super::pool::{Basis, TableSet, storage_buffer, texture_usage};
 use crate::accel::Acceleration;
 use crate::gpu::device::contents::Contents;
 use crate::gpu::device::error::Error;
 use crate::gpu::device::open::Device;
-use crate::gpu::device::upload::{empty_texels, max_texels, upload, upload_texels};
+use crate::gpu::device::upload::{empty_texels, max_texels, upload};
 use crate::gpu::kernel::pipeline::Resource;
 use crate::gpu::kernel::specialisation::Specialisation;
 use crate::gpu::kernel::variant::Tables;
-
-/// How textures that are tables are bound; `None` for tables in buffers.
-fn texture_usage(tables: Tables) -> Option<wgpu::TextureUsages> {
-    match tables {
-        Tables::Buffers => None,
-        Tables::Stored => Some(wgpu::TextureUsages::STORAGE_BINDING),
-        Tables::Sampled => Some(wgpu::TextureUsages::TEXTURE_BINDING),
-    }
-}
-
-/// A table with `contents`, of so many `u32` a texel where it is a texture.
-pub(crate) fn table(device: &Device, tables: Tables, contents: &Contents, components: u32) -> Result<Resource, Error> {
-    match texture_usage(tables) {
-        None => storage_buffer(device, contents),
-        Some(usage) => upload_texels(device, contents, components, usage).map(Resource::Texels),
-    }
-}
 
 /// A table for so many bytes that kernels keep and read.
 pub(crate) fn empty_table(device: &Device, tables: Tables, size: u64, components: u32) -> Resource {
@@ -38,12 +21,6 @@ pub(crate) fn empty_table(device: &Device, tables: Tables, size: u64, components
         }
         Some(usage) => Resource::Texels(empty_texels(device, size, components, usage)),
     }
-}
-
-fn storage_buffer(device: &Device, contents: &Contents) -> Result<Resource, Error> {
-    // A binding of size 0 is not allowed.
-    let size = contents.len().max(64);
-    upload(device, contents, wgpu::BufferUsages::STORAGE, size).map(Resource::Buffer)
 }
 
 /// Greatest size of a table, in bytes.

@@ -2,13 +2,12 @@
 
 use std::sync::{Arc, Mutex};
 
-use super::bind::table;
 use crate::accel::ScreenRoom;
 use crate::effects::EffectSet;
 use crate::gpu::device::contents::Contents;
 use crate::gpu::device::error::Error;
 use crate::gpu::device::open::Device;
-use crate::gpu::device::upload::{fill_buffer, fill_texels};
+use crate::gpu::device::upload::{fill_buffer, fill_texels, upload, upload_texels};
 use crate::gpu::kernel::pipeline::{Resource, Resources};
 use crate::gpu::kernel::variant::Tables;
 use crate::settings::Quantize;
@@ -129,4 +128,28 @@ impl Drop for TableSet {
         let (device, tables) = (self.device.clone(), std::mem::take(&mut self.tables));
         sets.push(Self { device, kind: self.kind, tables, earlier: Vec::new(), pool: None });
     }
+}
+
+/// How textures that are tables are bound; `None` for tables in buffers.
+pub(super) fn texture_usage(tables: Tables) -> Option<wgpu::TextureUsages> {
+    match tables {
+        Tables::Buffers => None,
+        Tables::Stored => Some(wgpu::TextureUsages::STORAGE_BINDING),
+        Tables::Sampled => Some(wgpu::TextureUsages::TEXTURE_BINDING),
+    }
+}
+
+/// A table with `contents`, of so many `u32` a texel where it is a texture.
+fn table(device: &Device, tables: Tables, contents: &Contents, components: u32) -> Result<Resource, Error> {
+    match texture_usage(tables) {
+        None => storage_buffer(device, contents),
+        Some(usage) => upload_texels(device, contents, components, usage).map(Resource::Texels),
+    }
+}
+
+/// The same in a buffer.
+pub(super) fn storage_buffer(device: &Device, contents: &Contents) -> Result<Resource, Error> {
+    // A binding of size 0 is not allowed.
+    let size = contents.len().max(64);
+    upload(device, contents, wgpu::BufferUsages::STORAGE, size).map(Resource::Buffer)
 }
