@@ -1,10 +1,10 @@
 //! How great the numbers become that make up a colour: beyond the range of the scalar that adds them up they would be infinite.
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use crate::effects::{Effect, Effects};
 use crate::scene::{Scene, Sphere};
+use crate::viewed::ViewedScene;
 
 /// The greatest colour that a path can gather, as a product of which no factor is taken as less than 1: no partial product is
 /// greater, and what underflow takes from one is invisible.
@@ -57,21 +57,49 @@ impl Scalar {
 }
 
 /// What a sphere, or several, add: each with the sphere that adds it.
-#[derive(Clone, Copy)]
-struct Parts {
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Parts {
     local: (f64, Option<usize>),
-    gain: (f64, Option<usize>),
+    /// Of a bounce: by reflection, by refraction, by both.
+    gains: [(f64, Option<usize>); 3],
     has_negative: bool,
 }
 
 impl Parts {
-    fn greater(self, later: Self) -> Self {
+    /// Of no sphere.
+    pub(crate) const NONE: Self = Self { local: (1.0, None), gains: [(1.0, None); 3], has_negative: false };
+
+    /// The light of AMBIENT, and that of all lights together.
+    pub(crate) fn light(scene: &Scene) -> [f64; 2] {
+        [greatest(scene.ambient), scene.lights.iter().map(|light| greatest(light.intensity)).sum()]
+    }
+
+    /// Of one sphere in this light.
+    pub(crate) fn of(index: usize, sphere: &Sphere, [ambient, lights]: [f64; 2]) -> Self {
+        let at_least_1 = |x: f64| x.abs().max(1.0);
+        let shown = ambient * at_least_1(sphere.ka) + lights * (at_least_1(sphere.kd) + at_least_1(sphere.ks));
+        let gains = [sphere.kr.abs(), sphere.kt.abs(), sphere.kr.abs() + sphere.kt.abs()];
+        let coefficients = [sphere.ka, sphere.kd, sphere.ks, sphere.kr, sphere.kt];
+        Self {
+            local: (greatest(sphere.color) * shown, Some(index)),
+            gains: gains.map(|gain| (gain, Some(index))),
+            has_negative: coefficients.iter().any(|&k| k < 0.0) || sphere.color.min_element() < 0.0,
+        }
+    }
+
+    /// Of these and of `later` spheres.
+    pub(crate) fn greater(self, later: Self) -> Self {
         Self {
             local: later_if_greater(self.local, later.local),
-            gain: later_if_greater(self.gain, later.gain),
+            gains: [0, 1, 2].map(|kind| later_if_greater(self.gains[kind], later.gains[kind])),
             has_negative: self.has_negative || later.has_negative,
         }
     }
+}
+
+/// The greatest component, or 1.
+fn greatest(color: DVec3) -> f64 {
+    color.abs().max_element().max(1.0)
 }
 
 fn later_if_greater(first: (f64, Option<usize>), later: (f64, Option<usize>)) -> (f64, Option<usize>) {
@@ -79,27 +107,19 @@ fn later_if_greater(first: (f64, Option<usize>), later: (f64, Option<usize>)) ->
 }
 
 impl Brightness {
-    /// Of `scene` where `effects` are simulated.
-    pub fn of(scene: &Scene, effects: &Effects) -> Self {
-        let [reflects, refracts] = [Effect::Reflections, Effect::Refraction].map(|effect| effects.set.has(effect));
-        let greatest = |v: DVec3| v.abs().max_element().max(1.0);
-        let at_least_1 = |x: f64| x.abs().max(1.0);
-        let lights: f64 = scene.lights.iter().map(|light| greatest(light.intensity)).sum();
-        let (ambient, back) = (greatest(scene.ambient), greatest(scene.background));
-        let part = |(index, sphere): (usize, &Sphere)| {
-            let shown = ambient * at_least_1(sphere.ka) + lights * (at_least_1(sphere.kd) + at_least_1(sphere.ks));
-            let bounces = [(reflects, sphere.kr), (refracts, sphere.kt)];
-            let gain: f64 = bounces.iter().map(|&(on, k)| if on { k.abs() } else { 0.0 }).sum();
-            let coefficients = [sphere.ka, sphere.kd, sphere.ks, sphere.kr, sphere.kt];
-            let has_negative = coefficients.iter().any(|&k| k < 0.0) || sphere.color.min_element() < 0.0;
-            Parts { local: (greatest(sphere.color) * shown, Some(index)), gain: (gain, Some(index)), has_negative }
+    /// Of `viewed` where `effects` are simulated.
+    pub fn of(viewed: &ViewedScene, effects: &Effects) -> Self {
+        let scene = viewed.scene();
+        let Parts { local, gains, has_negative } = viewed.census().brightness;
+        let gain = match [Effect::Reflections, Effect::Refraction].map(|effect| effects.set.has(effect)) {
+            [false, false] => (1.0, None),
+            [true, false] => gains[0],
+            [false, true] => gains[1],
+            [true, true] => gains[2],
         };
-        let light_colors = scene.lights.iter().map(|light| light.intensity);
-        let mut colors = light_colors.chain([scene.ambient, scene.background]);
-        let none = || Parts { local: (1.0, None), gain: (1.0, None), has_negative: false };
-        let Parts { local, gain, has_negative } =
-            scene.spheres.par_iter().enumerate().map(part).reduce(none, Parts::greater);
-        let (local, local_sphere) = later_if_greater((ambient.max(back), None), local);
+        let mut colors = scene.lights.iter().map(|light| light.intensity).chain([scene.ambient, scene.background]);
+        let (local, local_sphere) =
+            later_if_greater((greatest(scene.ambient).max(greatest(scene.background)), None), local);
         let bounces = gain.0.powf(f64::from(effects.depth));
         Self {
             local,

@@ -103,14 +103,9 @@ impl Camera {
         self.window.top - (self.window.top - self.window.bottom) * j / f64::from(self.height)
     }
 
-    /// Column coordinate (in pixel widths from the left edge) of `x` on the image plane: the inverse of [`Camera::x_at`].
-    pub fn column_of(&self, x: f64) -> f64 {
-        (x - self.window.left) / (self.window.right - self.window.left) * f64::from(self.width)
-    }
-
-    /// Row coordinate (in pixel heights from the top edge) of `y` on the image plane: the inverse of [`Camera::y_at`].
-    pub fn row_of(&self, y: f64) -> f64 {
-        (self.window.top - y) / (self.window.top - self.window.bottom) * f64::from(self.height)
+    /// From the left to the right edge of the window, and from the bottom to the top; either may be negative.
+    pub fn window_size(&self) -> [f64; 2] {
+        [self.window.right - self.window.left, self.window.top - self.window.bottom]
     }
 
     /// Where a pixel's first and last sample are, in pixel widths from its left edge.

@@ -10,6 +10,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 
+use crate::census::{Census, Extents};
 use crate::scene::{Light, Scene, Sphere};
 use crate::settings::Settings;
 use crate::viewed::ViewedScene;
@@ -224,7 +225,7 @@ impl Effects {
         let _span = tracing::info_span!("find effects").entered();
         // In its units no square below overflows or underflows, and what is too small for kernels is seen.
         let settings = viewed.settings();
-        let needs = Needs::new(viewed.scene(), settings);
+        let needs = Needs::new(viewed);
         let (depth, reflections) = needs.reflections();
         let refraction = needs.refraction();
         let depth = if refraction.is_ok() { settings.max_depth } else { depth };
@@ -301,7 +302,7 @@ impl Effects {
 /// Beyond this many pairs of a light and a sphere the search for blockers is not worth its time.
 const MAX_SHADOW_PAIRS: usize = 4096;
 /// Spheres within this range of semi-axes need no rescaling to keep f32 squares in range.
-const COMMON_SIZES: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
+pub(crate) const COMMON_SIZES: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 
 /// Yes or no, with the reason.
 type Finding = Result<String, String>;
@@ -310,27 +311,26 @@ type Finding = Result<String, String>;
 struct Needs<'a> {
     scene: &'a Scene,
     settings: &'a Settings,
-    /// Whether a primary ray may see the inner wall of some sphere, by index.
+    census: &'a Census,
+    /// The first sphere of which a primary ray may see the inner wall.
     first_cut: Option<usize>,
     /// The first sphere that refracts.
     glass: Option<usize>,
 }
 
 impl<'a> Needs<'a> {
-    fn new(scene: &'a Scene, settings: &'a Settings) -> Self {
-        let first_cut = scene.spheres.par_iter().position_first(|sphere| !beyond_image_plane(scene, settings, sphere));
-        let glass =
-            scene.spheres.par_iter().position_first(|sphere| sphere.kt != 0.0).filter(|_| settings.max_depth > 0);
-        Self { scene, settings, first_cut, glass }
+    fn new(viewed: &'a ViewedScene) -> Self {
+        let (scene, settings, census) = (viewed.scene(), viewed.settings(), viewed.census());
+        let is_cut = |sphere: &Sphere| !beyond_image_plane(scene, settings, sphere);
+        // Most often one look at all of them together is enough.
+        let first_cut =
+            if all_beyond_image_plane(viewed) { None } else { scene.spheres.par_iter().position_first(is_cut) };
+        let glass = census.glass.filter(|_| settings.max_depth > 0);
+        Self { scene, settings, census, first_cut, glass }
     }
 
     fn name(&self, index: usize) -> String {
         self.scene.sphere_names.in_words("sphere", index)
-    }
-
-    /// The first sphere with the property, for a reason in words.
-    fn first(&self, property: impl Fn(&Sphere) -> bool) -> Option<String> {
-        self.scene.spheres.iter().position(property).map(|index| self.name(index))
     }
 
     fn ambient(&self) -> Finding {
@@ -338,14 +338,14 @@ impl<'a> Needs<'a> {
         if light == DVec3::ZERO {
             return Err("AMBIENT is 0".into());
         }
-        match self.first(|s| s.ka != 0.0 && s.color * light != DVec3::ZERO) {
-            Some(name) => Ok(format!("{name} has Ka > 0")),
+        match self.scene.spheres.iter().position(|s| s.ka != 0.0 && s.color * light != DVec3::ZERO) {
+            Some(index) => Ok(format!("{} has Ka > 0", self.name(index))),
             None => Err("no sphere has a Ka and a colour that AMBIENT shows".into()),
         }
     }
 
-    /// The first lit sphere of those with the property.
-    fn lit_by_lights(&self, coefficient: &str, property: impl Fn(&Sphere, &Light) -> bool) -> Finding {
+    /// The first sphere that `find` finds among those that one of some lights shows, if there is any light.
+    fn lit_by_lights(&self, coefficient: &str, find: impl Fn(&[&Light]) -> Option<usize>) -> Finding {
         if self.scene.lights.is_empty() {
             return Err("no lights".into());
         }
@@ -353,18 +353,21 @@ impl<'a> Needs<'a> {
         if useful.is_empty() {
             return Err("every light has intensity 0".into());
         }
-        match self.first(|s| useful.iter().any(|light| property(s, light))) {
-            Some(name) => Ok(format!("{name} has {coefficient} > 0")),
+        match find(&useful) {
+            Some(index) => Ok(format!("{} has {coefficient} > 0", self.name(index))),
             None => Err(format!("no sphere has a {coefficient} that the lights show")),
         }
     }
 
     fn diffuse(&self) -> Finding {
-        self.lit_by_lights("Kd", |s, light| s.kd != 0.0 && s.color * light.intensity != DVec3::ZERO)
+        self.lit_by_lights("Kd", |lights| {
+            let shows = |s: &Sphere| lights.iter().any(|light| s.color * light.intensity != DVec3::ZERO);
+            self.scene.spheres.iter().position(|s| s.kd != 0.0 && shows(s))
+        })
     }
 
     fn specular(&self) -> Finding {
-        self.lit_by_lights("Ks", |s, _| s.ks != 0.0)
+        self.lit_by_lights("Ks", |_| self.census.shiny)
     }
 
     /// Whether some sphere can stand between a light and a point that it lights.
@@ -405,8 +408,8 @@ impl<'a> Needs<'a> {
         if self.settings.max_depth == 0 {
             return (0, Err("the greatest depth is 0".into()));
         }
-        let mut mirrors = spheres.iter().enumerate().filter(|(_, s)| s.kr != 0.0).map(|(index, _)| index);
-        let Some(first) = mirrors.next() else {
+        let [first, second] = self.census.mirrors;
+        let Some(first) = first else {
             return (0, Err("no sphere has Kr > 0".into()));
         };
         let name = self.name(first);
@@ -416,7 +419,7 @@ impl<'a> Needs<'a> {
         }
         let outside_only =
             beyond_image_plane(self.scene, self.settings, &spheres[first]) && self.far_from_others(first);
-        match (mirrors.next(), outside_only) {
+        match (second, outside_only) {
             (None, true) if spheres.len() == 1 => {
                 (0, Err(format!("{name} is alone, convex and seen from outside: its reflection rays hit nothing")))
             }
@@ -451,11 +454,11 @@ impl<'a> Needs<'a> {
     }
 
     fn ellipsoids(&self) -> Finding {
-        if let Some(name) = self.first(|s| s.scale.abs() != DVec3::splat(s.scale.x.abs())) {
-            return Ok(format!("{name} has unequal semi-axes"));
+        if let Some(index) = self.census.uneven {
+            return Ok(format!("{} has unequal semi-axes", self.name(index)));
         }
-        match self.first(|s| !COMMON_SIZES.contains(&s.scale.x.abs())) {
-            Some(name) => Ok(format!("{name} is so small or large that its size must be scaled out")),
+        match self.census.uncommon {
+            Some(index) => Ok(format!("{} is so small or large that its size must be scaled out", self.name(index))),
             None => Err("every sphere has three equal semi-axes".into()),
         }
     }
@@ -470,6 +473,16 @@ fn radius(sphere: &Sphere) -> f64 {
 fn rounding(sphere: &Sphere) -> f64 {
     let ratio = radius(sphere) / sphere.scale.abs().min_element();
     64.0 * f64::from(f32::EPSILON) * (sphere.center.length() + radius(sphere)) * ratio
+}
+
+/// Whether the box around all spheres lies so far beyond the image plane that each of them does.
+fn all_beyond_image_plane(viewed: &ViewedScene) -> bool {
+    let (Extents { low, high, .. }, near) = (viewed.extents(), viewed.scene().window.near);
+    let [_, _, back] = viewed.settings().view.axes();
+    let ends = [back * low, back * high];
+    let [nearest, farthest] = [ends[0].max(ends[1]), ends[0].min(ends[1])].map(DVec3::element_sum);
+    // Twice what each sphere keeps, which leaves room for rounding.
+    nearest < -near - 2e-4 * (near + nearest.abs().max(farthest.abs()))
 }
 
 /// Whether no primary ray can meet the sphere at or before the image plane, nor from inside.
@@ -504,4 +517,36 @@ fn may_block(light: &Light, receiver: &Sphere, blocker: &Sphere) -> bool {
     let least = clearance(0.0).min(clearance(1.0)).min(clearance(nearest.clamp(0.0, 1.0)));
     let scale = light.position.length() + receiver.center.length() + blocker.center.length() + r + b;
     least < b + 1e-3 * scale
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+    use crate::scene::Window;
+    use crate::view::View;
+
+    /// The look at all spheres together finds nothing that the look at each does not.
+    #[test]
+    fn where_all_are_beyond_the_image_plane_each_is() {
+        let mut random = Random::new(10, 1);
+        let mut beyond = 0;
+        for _ in 0..3000 {
+            let mut scene = Scene::new(Window::default(), 8, 8);
+            let at = random.in_box(20.0);
+            for _ in 0..random.bits() % 4 {
+                let mut sphere = Sphere::new(at + random.in_box(2.0), 1.0, DVec3::ONE);
+                sphere.scale = random.in_box(0.5) + DVec3::splat(0.6);
+                scene.spheres.push(sphere);
+            }
+            let view = View::new(random.in_box(1.0), Some(at), random.unit()).expect("it is far");
+            let viewed = scene.viewed_by(&Settings { view, ..Settings::default() }, None);
+            if all_beyond_image_plane(&viewed) {
+                beyond += 1;
+                let is_beyond = |s: &Sphere| beyond_image_plane(viewed.scene(), viewed.settings(), s);
+                assert!(viewed.scene().spheres.iter().all(is_beyond), "{:?}", viewed.scene().spheres);
+            }
+        }
+        assert!(beyond > 1000, "{beyond}");
+    }
 }

@@ -4,6 +4,8 @@
 //! `inv_scale` and the ellipsoid becomes a sphere of `radius` in [1, 2) around the origin. `inv_scale` is a power of two
 //! times the ratio of the greatest semi-axis to each axis, so for a true sphere the way into object space is exact.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -33,12 +35,13 @@ impl Ellipsoid {
         let s = scale.abs();
         let largest = s.max_element();
         let k = reciprocal_power_of_two(largest);
-        Self {
-            center,
-            inv_scale: DVec3::new(largest / s.x, largest / s.y, largest / s.z) * k,
-            scale: s / largest / k,
-            radius: largest * k,
-        }
+        let (inv_scale, scale) = if s == DVec3::splat(largest) {
+            // The same numbers without a quotient for each axis.
+            (DVec3::splat(k), DVec3::splat(1.0 / k))
+        } else {
+            (DVec3::new(largest / s.x, largest / s.y, largest / s.z) * k, s / largest / k)
+        };
+        Self { center, inv_scale, scale, radius: largest * k }
     }
 
     /// Bits that are equal exactly when two ellipsoids are the same surface to the intersection.
@@ -83,26 +86,36 @@ pub(crate) fn extent(v: DVec3) -> f64 {
 /// For each sphere the lowest index of a sphere with the bit-identical surface: rays that leave one leave them all. `None` where
 /// no two are the same.
 pub fn shape_indices(spheres: &[Sphere], true_axes: bool) -> Option<Vec<u32>> {
+    shape_indices_among(spheres, true_axes, &twins(spheres, 0.0))
+}
+
+/// The same where only these may share a surface.
+pub(crate) fn shape_indices_among(spheres: &[Sphere], true_axes: bool, among: &[u32]) -> Option<Vec<u32>> {
     let bits = |index: u32| ellipsoid(&spheres[index as usize], true_axes).bits();
-    let hash = |bits: [u64; 7]| {
-        // Any mixing will do: equal surfaces have equal hashes, and what is sorted below is but those that have.
-        bits.into_iter().fold(0_u64, |hash, x| (hash.rotate_left(25) ^ x).wrapping_mul(0x9e37_79b9_7f4a_7c15))
-    };
-    let hashes: Vec<u64> = (0..spheres.len() as u32).into_par_iter().map(|index| hash(bits(index))).collect();
-    let repeated: Vec<u64> = {
-        let mut sorted = hashes.clone();
-        sorted.par_sort_unstable();
-        sorted.windows(2).filter(|pair| pair[0] == pair[1]).map(|pair| pair[0]).collect()
-    };
-    let mut order: Vec<u32> =
-        (0..spheres.len() as u32).filter(|&index| repeated.binary_search(&hashes[index as usize]).is_ok()).collect();
-    order.sort_unstable_by(|&a, &b| bits(a).cmp(&bits(b)).then(a.cmp(&b)));
+    let mut order: Vec<_> = among.par_iter().map(|&index| (bits(index), index)).collect();
+    order.par_sort_unstable();
     let mut indices = None;
-    for same in order.chunk_by(|&a, &b| bits(a) == bits(b)).filter(|same| same.len() > 1) {
+    for same in order.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() > 1) {
         let indices = indices.get_or_insert_with(|| (0..spheres.len() as u32).collect::<Vec<_>>());
-        for &index in same {
-            indices[index as usize] = same[0];
+        for &(_, index) in same {
+            indices[index as usize] = same[0].1;
         }
     }
     indices
+}
+
+/// Spheres that are in the same place, or become so where rounding moves them: their coordinates are no greater than `reach`, before and
+/// after. Some others are among them.
+pub(crate) fn twins(spheres: &[Sphere], reach: f64) -> Arc<[u32]> {
+    // Along this line hardly any two are in the same place by chance, nor where all lie in a plane.
+    let line = DVec3::new(0.562_341_325, 0.749_894_209, 0.348_700_012);
+    let place = |(index, sphere): (usize, &Sphere)| (sphere.center.dot(line), index as u32);
+    let mut places: Vec<_> = spheres.par_iter().enumerate().map(place).collect();
+    places.par_sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    // Twice the rounding of each coordinate of both, and of the places themselves.
+    let room = 32.0 * f64::EPSILON * reach;
+    let is_near = |pair: &[(f64, u32)]| !(pair[1].0 - pair[0].0 > room);
+    let near = |at: usize| is_near(&places[at - 1..=at]);
+    let has_one = |&at: &usize| at > 0 && near(at) || at + 1 < places.len() && near(at + 1);
+    (0..places.len()).filter(has_one).map(|at| places[at].1).collect()
 }

@@ -56,6 +56,7 @@ pub mod brightness;
 mod cache;
 #[doc(hidden)]
 pub mod camera;
+mod census;
 #[doc(hidden)]
 pub mod certificate;
 #[doc(hidden)]
@@ -87,6 +88,8 @@ pub mod gpu;
 pub mod grade;
 mod hash;
 pub mod import;
+#[doc(hidden)]
+pub mod kept;
 #[doc(hidden)]
 pub mod limits;
 #[doc(hidden)]

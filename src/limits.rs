@@ -5,7 +5,6 @@ use rayon::prelude::*;
 use crate::brightness::{Brightness, Scalar};
 use crate::effects::{Effect, Effects};
 use crate::geometry::extent;
-use crate::scene::Scene;
 use crate::viewed::ViewedScene;
 
 /// How many times larger than any semi-axis the whole scene may be, so that squares of the way to a light in semi-axes stay within
@@ -21,32 +20,33 @@ const MAX_PLANE: f64 = 1e250;
 /// Why `viewed` cannot be rendered at all; `None` where it can.
 pub fn problem(viewed: &ViewedScene, effects: &Effects) -> Option<String> {
     let scene = viewed.scene();
-    sizes(viewed).or_else(|| Brightness::of(scene, effects).problem(scene, Scalar::Double))
+    sizes(viewed).or_else(|| Brightness::of(viewed, effects).problem(scene, Scalar::Double))
 }
 
 /// Why kernels of this scalar cannot render `viewed`, which can be rendered; `None` where they can.
 pub fn problem_in(scalar: Scalar, viewed: &ViewedScene, effects: &Effects) -> Option<String> {
     let scene = viewed.scene();
     let world = || {
-        let reach = reach(scene, effects);
-        let name = name_of_small(scene, |axis| axis * MAX_SINGLE < reach)?;
+        let reach = reach(viewed, effects);
+        let name = name_of_small(viewed, |axis| axis * MAX_SINGLE < reach)?;
         Some(format!("the scene is more than {MAX_SINGLE:.0e} times larger than the least semi-axis of {name}"))
     };
-    let brightness = Brightness::of(scene, effects).problem(scene, scalar);
+    let brightness = Brightness::of(viewed, effects).problem(scene, scalar);
     brightness.or_else(|| if scalar == Scalar::Single { world() } else { None })
 }
 
 /// The greatest coordinate of a sphere or of a light that casts shadows.
-pub fn reach(scene: &Scene, effects: &Effects) -> f64 {
+pub fn reach(viewed: &ViewedScene, effects: &Effects) -> f64 {
     let casts = effects.set.has(Effect::Shadows);
-    let lights = scene.lights.iter().filter(|_| casts).map(|light| extent(light.position));
-    let spheres = scene.spheres.par_iter().map(|s| extent(s.center).max(extent(s.scale))).reduce(|| 0.0, f64::max);
-    lights.fold(spheres, f64::max)
+    let lights = viewed.scene().lights.iter().filter(|_| casts).map(|light| extent(light.position));
+    lights.fold(viewed.greatest(), f64::max)
 }
 
 /// The first sphere whose least semi-axis is small, in words.
-fn name_of_small(scene: &Scene, is_small: impl Fn(f64) -> bool + Sync) -> Option<String> {
-    let first = scene.spheres.par_iter().position_first(|s| is_small(s.scale.abs().min_element()))?;
+fn name_of_small(viewed: &ViewedScene, is_small: impl Fn(f64) -> bool) -> Option<String> {
+    // Where the least one is not, none is.
+    let scene = Some(viewed.scene()).filter(|_| is_small(viewed.census().least.value))?;
+    let first = scene.spheres.iter().position(|s| is_small(s.scale.abs().min_element()))?;
     Some(scene.sphere_names.in_words("sphere", first))
 }
 
@@ -61,7 +61,7 @@ fn sizes(viewed: &ViewedScene) -> Option<String> {
     if let Some(name) = far_light.or_else(|| if greatest.is_finite() { None } else { far_sphere() }) {
         return Some(format!("{name} is so far from the eye that f64 cannot hold the distance"));
     }
-    if let Some(name) = name_of_small(scene, |axis| axis * MAX_WORLD < greatest) {
+    if let Some(name) = name_of_small(viewed, |axis| axis * MAX_WORLD < greatest) {
         return Some(format!("the scene is more than {MAX_WORLD:.0e} times larger than the least semi-axis of {name}"));
     }
 

@@ -8,15 +8,16 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::brightness::{Brightness, Scalar};
+use crate::census::CHUNK;
 use crate::effects::{Effect, Effects};
 use crate::limits;
-use crate::scene::Scene;
+use crate::scene::{Scene, Sphere};
 use crate::viewed::ViewedScene;
 
 mod outline;
 mod share;
 
-use share::Shares;
+use share::{LargestSpheres, Shares};
 
 /// A kernel of the GPU path, by what it promises.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
@@ -167,103 +168,79 @@ pub struct Extreme {
 }
 
 impl Extreme {
-    fn raise(&mut self, value: f64, sphere: usize) {
+    /// What is raised, of no sphere.
+    pub(crate) const NONE: Self = Self { value: 0.0, sphere: None };
+    /// What is lowered, of no sphere.
+    pub(crate) const NOTHING_LESS: Self = Self { value: f64::INFINITY, sphere: None };
+
+    pub(crate) fn raise(&mut self, value: f64, sphere: usize) {
         if value > self.value {
             *self = Self { value, sphere: Some(sphere) };
         }
     }
 
-    fn lower(&mut self, value: f64, sphere: usize) {
+    pub(crate) fn lower(&mut self, value: f64, sphere: usize) {
         if value < self.value {
             *self = Self { value, sphere: Some(sphere) };
+        }
+    }
+
+    /// To that of later spheres.
+    pub(crate) fn raise_to(&mut self, later: Self) {
+        if later.value > self.value {
+            *self = later;
+        }
+    }
+
+    /// Likewise.
+    pub(crate) fn lower_to(&mut self, later: Self) {
+        if later.value < self.value {
+            *self = later;
         }
     }
 }
 
 /// Pairs of spheres are searched for nested surfaces up to this many spheres; beyond, each against its successor.
 const MAX_PAIRWISE: usize = 2000;
-/// Spheres that one thread looks at in turn.
-const CHUNK: usize = 4096;
+/// Nested spheres are no farther apart, in radii.
+const CLOSE: f64 = 0.1;
 
 impl Demand {
     /// What `viewed` demands where `effects` are simulated.
     pub fn of(viewed: &ViewedScene, effects: &Effects) -> Self {
         // The brightness aside, all of it is the same in any units: in these no square leaves the range.
-        let scene = viewed.scene();
-        let (brightness, reach) = (Brightness::of(scene, effects), limits::reach(scene, effects));
+        let (scene, census) = (viewed.scene(), viewed.census());
+        let (brightness, reach) = (Brightness::of(viewed, effects), limits::reach(viewed, effects));
+        let lights = scene.lights.iter().filter(|_| effects.set.has(Effect::Shadows)).map(|light| light.position);
+        let origins: Vec<DVec3> = std::iter::once(DVec3::ZERO).chain(lights).collect();
         let count = scene.spheres.len();
         let chunk = |chunk: usize| {
-            let mut demand = Self::none();
-            (chunk * CHUNK..count.min((chunk + 1) * CHUNK)).for_each(|index| demand.add(scene, effects, reach, index));
-            demand
+            let mut found = Found::none();
+            for index in chunk * CHUNK..count.min((chunk + 1) * CHUNK) {
+                let sphere = &scene.spheres[index];
+                found.add_nearness(index, sphere, &origins);
+                found.largest.add(index, sphere);
+                if count > MAX_PAIRWISE && index > 0 {
+                    found.nested.extend(gap_of(scene, index - 1, index));
+                }
+            }
+            found
         };
-        let demand = (0..count.div_ceil(CHUNK)).into_par_iter().map(chunk).reduce(Self::none, |a, b| a.and(&b));
+        let found = (0..count.div_ceil(CHUNK)).into_par_iter().map(chunk).reduce(Found::none, Found::and);
+        let Found { nearness, largest, mut nested } = found;
+        if count <= MAX_PAIRWISE {
+            nested = nested_pairs(scene);
+        }
+        let on = |effect, extreme| if effects.set.has(effect) { extreme } else { Extreme::NONE };
         Self {
-            share: Shares::new(scene, viewed.settings().view.axes(), effects).estimate(&nested(scene)),
+            share: Shares::new(scene, viewed.settings().view.axes(), effects).estimate(&largest, &nested),
+            nearness,
+            axis_ratio: census.axis_ratio,
+            exponent: on(Effect::Specular, census.exponent),
+            bending: on(Effect::Refraction, census.bending),
+            reach: Extreme { value: reach / census.least.value, ..census.least },
             brightness: Extreme { value: brightness.greatest(), sphere: brightness.sphere },
-            ..demand
         }
-    }
-
-    /// Of no sphere.
-    fn none() -> Self {
-        let least = Extreme { value: 0.0, sphere: None };
-        Self {
-            share: [least; 3],
-            nearness: Extreme { value: f64::INFINITY, sphere: None },
-            axis_ratio: least,
-            exponent: least,
-            bending: least,
-            reach: least,
-            brightness: least,
-        }
-    }
-
-    /// What a sphere demands by itself.
-    fn add(&mut self, scene: &Scene, effects: &Effects, reach: f64, index: usize) {
-        let sphere = &scene.spheres[index];
-        let scale = sphere.scale.abs();
-        let (short, long) = (scale.min_element(), scale.max_element());
-        self.axis_ratio.raise(long / short, index);
-        self.reach.raise(reach / short, index);
-        if effects.set.has(Effect::Specular) && sphere.ks != 0.0 {
-            self.exponent.raise(sphere.n, index);
-        }
-        if effects.set.has(Effect::Refraction) && sphere.kt != 0.0 {
-            self.bending.raise(sphere.eta.max(1.0 / sphere.eta), index);
-        }
-        let mut add_nearness = |origin: DVec3| {
-            let from_center = origin - sphere.center;
-            // What is farther away is not near.
-            if from_center.length_squared() <= 4.0 * long * long {
-                let height = (from_center / scale).length() - 1.0;
-                let coordinates = sphere.center.length() + origin.length() + long;
-                self.nearness.lower(height.abs() * short / coordinates, index);
-            }
-        };
-        add_nearness(DVec3::ZERO);
-        if effects.set.has(Effect::Shadows) {
-            for light in &scene.lights {
-                add_nearness(light.position);
-            }
-        }
-    }
-
-    /// Of the spheres of both.
-    fn and(mut self, other: &Self) -> Self {
-        let greater = |mine: &mut Extreme, other: Extreme| {
-            if let Some(sphere) = other.sphere {
-                mine.raise(other.value, sphere);
-            }
-        };
-        greater(&mut self.axis_ratio, other.axis_ratio);
-        greater(&mut self.exponent, other.exponent);
-        greater(&mut self.bending, other.bending);
-        greater(&mut self.reach, other.reach);
-        if let Some(sphere) = other.nearness.sphere {
-            self.nearness.lower(other.nearness.value, sphere);
-        }
-        self
     }
 
     /// The first demand that `tier` does not cover, in words; `None` where it covers all.
@@ -322,20 +299,58 @@ impl Demand {
     }
 }
 
-/// Nearly concentric spheres whose radii differ by little, each with the gap in world units; equal ones are one surface.
-fn nested(scene: &Scene) -> Vec<(usize, f64)> {
-    const CLOSE: f64 = 0.1;
-    let spheres = &scene.spheres;
-    let gap_of = |i: usize, j: usize| {
-        let (a, b) = (&spheres[i], &spheres[j]);
-        let size = a.scale.abs().max_element();
-        let offset = (a.center - b.center).length();
-        let gap = (a.scale.abs() - b.scale.abs()).abs().max_element().max(offset);
-        (gap < CLOSE * size && gap > 0.0).then_some((j, gap))
-    };
-    if spheres.len() > MAX_PAIRWISE {
-        return (1..spheres.len()).filter_map(|j| gap_of(j - 1, j)).collect();
+/// What one look at each sphere finds that each eye sees otherwise.
+struct Found {
+    nearness: Extreme,
+    largest: LargestSpheres,
+    /// Of many spheres: those that are nested with the one before them.
+    nested: Vec<(usize, f64)>,
+}
+
+impl Found {
+    fn none() -> Self {
+        Self { nearness: Extreme::NOTHING_LESS, largest: LargestSpheres::default(), nested: Vec::new() }
     }
+
+    /// How near the origins of rays, the eye and lights that cast shadows, are to the surface of a sphere.
+    fn add_nearness(&mut self, index: usize, sphere: &Sphere, origins: &[DVec3]) {
+        let scale = sphere.scale.abs();
+        let (short, long) = (scale.min_element(), scale.max_element());
+        for &origin in origins {
+            let from_center = origin - sphere.center;
+            // What is farther away is not near.
+            if from_center.length_squared() <= 4.0 * long * long {
+                let height = (from_center / scale).length() - 1.0;
+                let coordinates = sphere.center.length() + origin.length() + long;
+                self.nearness.lower(height.abs() * short / coordinates, index);
+            }
+        }
+    }
+
+    fn and(mut self, later: Self) -> Self {
+        self.nested.extend(later.nested);
+        self.nearness.lower_to(later.nearness);
+        Self { largest: self.largest.plus(later.largest), ..self }
+    }
+}
+
+/// The second of two nearly concentric spheres whose radii differ by little, with the gap in world units; equal ones are one surface.
+fn gap_of(scene: &Scene, i: usize, j: usize) -> Option<(usize, f64)> {
+    let (a, b) = (&scene.spheres[i], &scene.spheres[j]);
+    let size = a.scale.abs().max_element();
+    let way = a.center - b.center;
+    // Most are far apart, and no root is needed to see that.
+    if way.abs().max_element() > CLOSE * size {
+        return None;
+    }
+    let offset = way.length();
+    let gap = (a.scale.abs() - b.scale.abs()).abs().max_element().max(offset);
+    (gap < CLOSE * size && gap > 0.0).then_some((j, gap))
+}
+
+/// All such pairs.
+fn nested_pairs(scene: &Scene) -> Vec<(usize, f64)> {
+    let spheres = &scene.spheres;
     // Only spheres whose centres are close along x can be.
     let mut order: Vec<usize> = (0..spheres.len()).collect();
     order.sort_unstable_by(|&i, &j| spheres[i].center.x.total_cmp(&spheres[j].center.x));
@@ -345,7 +360,9 @@ fn nested(scene: &Scene) -> Vec<(usize, f64)> {
         order[at + 1..].iter().copied().take_while(move |&j| spheres[j].center.x <= end)
     };
     (0..order.len())
-        .flat_map(|at| close_to(at).filter_map(|j| gap_of(order[at].min(j), order[at].max(j))).collect::<Vec<_>>())
+        .flat_map(|at| {
+            close_to(at).filter_map(|j| gap_of(scene, order[at].min(j), order[at].max(j))).collect::<Vec<_>>()
+        })
         .collect()
 }
 

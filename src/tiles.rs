@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::area::Area;
 use crate::camera::Camera;
 use crate::geometry::Ellipsoid;
 
@@ -19,33 +20,72 @@ pub(crate) struct Bounds {
     outline: Option<Box<Outline>>,
 }
 
-impl Bounds {
+/// What a camera makes of spheres.
+#[derive(Debug)]
+pub(crate) struct Projection {
+    axes: [DVec3; 3],
+    near: f64,
+    across: Pixels,
+    down: Pixels,
+    area: Area,
+}
+
+impl Projection {
+    pub(crate) fn new(camera: &Camera) -> Self {
+        let (across, down) = (Pixels::across(camera), Pixels::down(camera));
+        Self { axes: camera.axes(), near: camera.near(), across, down, area: camera.area() }
+    }
+
+    /// Width and height of the picture.
+    pub(crate) fn size(&self) -> (u32, u32) {
+        (self.across.count, self.down.count)
+    }
+
+    /// The part of the picture that is rendered.
+    pub(crate) fn area(&self) -> Area {
+        self.area
+    }
+
     /// Columns and rows that the part of the ellipsoid beyond the image plane can cover.
-    pub(crate) fn new(center: DVec3, semi_axes: DVec3, camera: &Camera) -> Option<Self> {
-        let axes = camera.axes();
-        let [x, y, z] = axes.map(|axis| axis.dot(center));
-        let [half_x, half_y, half_z] = axes.map(|axis| axis * semi_axes);
-        let near = camera.near();
-        let depth = half_z.length();
-        let across = slopes([x, z], [half_x, half_z], depth, near)?;
-        let down = slopes([y, z], [half_y, half_z], depth, near)?;
-        let columns = columns_between(across, camera)?;
-        let rows = Pixels::down(camera).between(down.map(|slope| camera.row_of(slope * near)))?;
+    pub(crate) fn bounds(&self, center: DVec3, semi_axes: DVec3) -> Option<Bounds> {
+        let seen = self.axes.map(|axis| axis.dot(center));
+        let ([across, down], whole) = match ball_slopes(seen, semi_axes, self.near) {
+            Some(slopes) => (slopes, true),
+            None => self.slopes(seen, semi_axes)?,
+        };
+        let columns = self.across.between(across)?;
+        let rows = self.down.between(down)?;
         let is_large = rows[1] - rows[0] > 3 * TILE && columns[1] - columns[0] > 3 * TILE;
-        let whole = z + depth < -near;
         let ellipsoid = || Ellipsoid::with_axes(center, semi_axes);
-        let outline = (is_large && whole).then(|| Box::new(Outline::new(&ellipsoid(), axes, across)));
-        Some(Self { columns, rows, outline })
+        let outline = (is_large && whole).then(|| Box::new(Outline::new(&ellipsoid(), self.axes, across)));
+        Some(Bounds { columns, rows, outline })
+    }
+
+    /// The slopes of an ellipsoid at `seen` in the picture's axes, and whether all of it is beyond the image plane; none where
+    /// nothing of it is.
+    fn slopes(&self, [x, y, z]: [f64; 3], semi_axes: DVec3) -> Option<([[f64; 2]; 2], bool)> {
+        let [half_x, half_y, half_z] = self.axes.map(|axis| axis * semi_axes);
+        let depth = half_z.length();
+        let across = slopes([x, z], [half_x, half_z], depth, self.near)?;
+        let down = slopes([y, z], [half_y, half_z], depth, self.near)?;
+        Some(([across, down], z + depth < -self.near))
+    }
+}
+
+impl Bounds {
+    /// Whether all its rows see it in the same columns.
+    pub(crate) fn is_rectangle(&self) -> bool {
+        self.outline.is_none()
     }
 
     /// The columns in which the rows from `first` up to `end` can see it.
-    pub(crate) fn columns_in(&self, [first, end]: [u32; 2], camera: &Camera) -> [u32; 2] {
+    pub(crate) fn columns_in(&self, [first, end]: [u32; 2], projection: &Projection) -> [u32; 2] {
         let Some(outline) = &self.outline else {
             return self.columns;
         };
-        let rows = Pixels::down(camera).samples([first, end - 1]);
-        let slopes = outline.across(rows.map(|row| camera.y_at(row) / camera.near()));
-        match slopes.and_then(|slopes| columns_between(slopes, camera)) {
+        let rows = &projection.down;
+        let slopes = outline.across(rows.samples([first, end - 1]).map(|row| rows.slope(row)));
+        match slopes.and_then(|slopes| projection.across.between(slopes)) {
             // Never beyond the rectangle, which rounding could make it, and never empty, which only rounding leaves it.
             Some([left, right]) if left <= self.columns[1] && right >= self.columns[0] => {
                 [left.max(self.columns[0]), right.min(self.columns[1])]
@@ -112,25 +152,42 @@ impl Outline {
     }
 }
 
-/// The columns of pixels that have samples between two slopes x/−z.
-fn columns_between(slopes: [f64; 2], camera: &Camera) -> Option<[u32; 2]> {
-    Pixels::across(camera).between(slopes.map(|slope| camera.column_of(slope * camera.near())))
-}
-
 /// The pixels of a picture in one direction.
+#[derive(Debug)]
 struct Pixels {
     count: u32,
     /// Where a pixel's first and last sample are.
     samples: [f64; 2],
+    /// Distance of the image plane, the edge on it where pixels begin, and pixels per unit of length, negative where they go down.
+    near: f64,
+    edge: f64,
+    per_unit: f64,
 }
 
 impl Pixels {
     fn across(camera: &Camera) -> Self {
-        Self { count: camera.width(), samples: camera.samples_across() }
+        Self::new(camera.width(), camera.samples_across(), camera, camera.x_at(0.0), camera.window_size()[0])
     }
 
     fn down(camera: &Camera) -> Self {
-        Self { count: camera.height(), samples: camera.samples_down() }
+        Self::new(camera.height(), camera.samples_down(), camera, camera.y_at(0.0), -camera.window_size()[1])
+    }
+
+    fn new(count: u32, samples: [f64; 2], camera: &Camera, edge: f64, size: f64) -> Self {
+        let per_unit = f64::from(count) / size;
+        // Where that is beyond the range of f64, all bounds are left open.
+        let per_unit = if per_unit.is_finite() { per_unit } else { f64::NAN };
+        Self { count, samples, near: camera.near(), edge, per_unit }
+    }
+
+    /// Where in pixels from the edge the rays with this slope meet the image plane.
+    fn place(&self, slope: f64) -> f64 {
+        (slope * self.near - self.edge) * self.per_unit
+    }
+
+    /// The inverse.
+    fn slope(&self, place: f64) -> f64 {
+        (place / self.per_unit + self.edge) / self.near
     }
 
     /// More than rounding has taken from places between `a` and `b`. What it takes from rays is in the size of the spheres:
@@ -146,16 +203,39 @@ impl Pixels {
         [first + self.samples[0] - margin, last + self.samples[1] + margin]
     }
 
-    /// The pixels that have a sample between two places; none where no pixel has.
-    fn between(&self, places: [f64; 2]) -> Option<[u32; 2]> {
+    /// The pixels that have a sample between two slopes; none where no pixel has.
+    fn between(&self, slopes: [f64; 2]) -> Option<[u32; 2]> {
+        let places = slopes.map(|slope| self.place(slope));
         let [a, b] = places;
         let margin = self.margin(places);
         let (low, high) = (a.min(b) - margin - self.samples[1], a.max(b) + margin - self.samples[0]);
-        // NaN comes from products beyond the range of f64: then the bound is left open.
-        let low = if low.is_nan() { 0.0 } else { low.max(0.0).ceil() };
-        let high = if high.is_nan() { f64::INFINITY } else { high.floor() }.min(f64::from(self.count - 1));
-        (low <= high).then_some([low as u32, high as u32])
+        let last = self.count - 1;
+        if low > f64::from(last) || high < 0.0 {
+            return None;
+        }
+        // NaN comes from products beyond the range of f64: then the bound is left open. Conversions cut off fractions, take NaN for 0
+        // and what is out of range for the end of it.
+        let high = if high.is_nan() { last } else { (high as u32).min(last) };
+        let whole = low as u32;
+        let low = whole + u32::from(f64::from(whole) < low);
+        (low <= high).then_some([low, high])
     }
+}
+
+/// Across and down, the least and the greatest x/(−z) of a ball that lies wholly beyond z = −near; none of anything else. What [`slopes`]
+/// has for it, with fewer operations.
+fn ball_slopes([x, y, z]: [f64; 3], semi_axes: DVec3, near: f64) -> Option<[[f64; 2]; 2]> {
+    let radius = semi_axes.x;
+    // |(x, z)|² − r² is x² and this.
+    let rest = (z - radius) * (z + radius);
+    if semi_axes != DVec3::splat(radius) || !(z + radius < -near && rest > 0.0) {
+        return None;
+    }
+    let per_rest = 1.0 / rest;
+    Some([x, y].map(|x| {
+        let (middle, half) = (-x * z * per_rest, radius * (x * x + rest).sqrt() * per_rest);
+        [middle - half, middle + half]
+    }))
 }
 
 /// Least and greatest x/(−z) where an ellipsoid around (x, z) lies beyond z = −near; none where it does not.
@@ -202,4 +282,36 @@ fn slopes([x, z]: [f64; 2], [half_x, half_z]: [DVec3; 2], depth: f64, near: f64)
         return Some([f64::NAN, f64::NAN]);
     }
     Some(ends)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+
+    /// What is left out for balls changes nothing.
+    #[test]
+    fn slopes_of_balls_are_those_of_ellipsoids() {
+        let mut random = Random::new(9, 1);
+        let mut balls = 0;
+        for _ in 0..20_000 {
+            let (center, radius) = (random.in_box(8.0) + DVec3::NEG_Z * 6.0, random.magnitude(-3.0, 1.0));
+            let semi_axes = DVec3::splat(radius);
+            let halves = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis * radius);
+            let general = [center.x, center.y].into_iter().zip(halves);
+            let general = general.map(|(x, half)| slopes([x, center.z], [half, halves[2]], radius, 1.0));
+            let Some(found) = ball_slopes(center.to_array(), semi_axes, 1.0) else { continue };
+            balls += 1;
+            for (found, expected) in found.into_iter().zip(general) {
+                let expected = expected.expect("it is seen");
+                // The nearer to the plane of the eye, the longer are both.
+                let room = 1e-9 * (1.0 + expected[0].abs().max(expected[1].abs()));
+                let is_same = found.iter().zip(expected).all(|(a, b)| (a - b).abs() <= room);
+                assert!(is_same, "{center} {radius}: {found:?}, not {expected:?}");
+            }
+        }
+        assert!(balls > 5000, "{balls}");
+        assert_eq!(ball_slopes([0.0, 0.0, -9.0], DVec3::new(1.0, 1.0, 1.1), 1.0), None);
+        assert_eq!(ball_slopes([0.0, 0.0, -1.5], DVec3::ONE, 1.0), None, "a part of it is before the plane");
+    }
 }

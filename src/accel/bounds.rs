@@ -4,6 +4,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::kept::{ROOM, moved_at_most};
+use crate::census::Extents;
+use crate::geometry::extent;
 use crate::scene::Sphere;
 use crate::viewed::ViewedScene;
 
@@ -65,6 +67,8 @@ pub(super) struct Enclosure<'a> {
     pub(super) magnitude: f64,
     /// Likewise, or of a light.
     pub(super) reach: f64,
+    /// The least and the greatest coordinates of balls around the spheres.
+    ends: [DVec3; 2],
     /// How far what is made for it may be moved beside its place.
     pub(super) play: f64,
     rounding: Rounding,
@@ -74,12 +78,11 @@ impl<'a> Enclosure<'a> {
     /// Of the spheres of `viewed`, or of their bounding spheres without `true_axes`.
     pub(super) fn new(viewed: &'a ViewedScene, true_axes: bool, rounding: Rounding) -> Self {
         let scene = viewed.scene();
-        let extent = |v: DVec3| v.abs().max_element();
-        let magnitude = scene.spheres.par_iter().map(|s| extent(s.center) + extent(s.scale)).reduce(|| 0.0, f64::max);
+        let Extents { magnitude, low, high, .. } = viewed.extents();
         let reach = scene.lights.iter().map(|light| extent(light.position)).fold(magnitude, f64::max);
         // Of the file's numbers they take what the eye at the origin makes of them.
         let error = ERROR_STEPS * rounding.tests * magnitude + 2.0 * viewed.moved_by();
-        Self { spheres: &scene.spheres, true_axes, error, magnitude, reach, play: 0.0, rounding }
+        Self { spheres: &scene.spheres, true_axes, error, magnitude, reach, ends: [low, high], play: 0.0, rounding }
     }
 
     /// The same for lists that [`super::KeptLists`] gives to other eyes, too.
@@ -109,12 +112,7 @@ impl<'a> Enclosure<'a> {
 
     /// Middle and radius of a ball around all spheres.
     pub(super) fn ball(&self) -> (DVec3, f64) {
-        let ends = |s: &Sphere| {
-            let reach = DVec3::splat(s.scale.abs().max_element());
-            (s.center - reach, s.center + reach)
-        };
-        let hull = |a: (DVec3, DVec3), b: (DVec3, DVec3)| (a.0.min(b.0), a.1.max(b.1));
-        let (low, high) = self.spheres.par_iter().map(ends).reduce(|| (DVec3::INFINITY, DVec3::NEG_INFINITY), hull);
+        let [low, high] = self.ends;
         if low.x > high.x {
             return (DVec3::ZERO, 0.0);
         }

@@ -1,13 +1,14 @@
 //! Lists that one eye leaves to the next: those of lights and the grid depend on where the spheres are to each other, and on the eye by
 //! rounding alone.
 
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 
 use glam::DVec3;
 
 use super::bounds::{Enclosure, Rounding};
 use super::density::Density;
 use super::leaving::Leaving;
+use super::lists::Lists;
 use crate::brightness::Scalar;
 use crate::effects::EffectSet;
 use crate::scene::Light;
@@ -26,7 +27,7 @@ const MOST: usize = 3;
 
 /// The lists of one scene, for all eyes that have looked at it.
 #[derive(Debug, Default)]
-pub struct KeptLists(Mutex<Vec<Kept>>);
+pub(crate) struct KeptLists(Mutex<Vec<Kept>>);
 
 /// What lists are made for.
 type Key = (EffectSet, Rounding, Density, f64);
@@ -66,6 +67,41 @@ impl Sizes {
     }
 }
 
+/// The most cells and entries that the screen of any eye has had so far, with some more.
+pub(super) type Room = Arc<Mutex<[usize; 2]>>;
+
+/// Room for the lists of a screen, so that a buffer has those which other eyes share in the same place for all.
+#[derive(Debug, Clone)]
+pub struct ScreenRoom {
+    of: Room,
+    sizes: [usize; 2],
+}
+
+impl ScreenRoom {
+    /// Enough for `screen`.
+    pub(super) fn of(room: &Room, screen: &Lists) -> Self {
+        let mut sizes = lock(room);
+        for (size, needed) in sizes.iter_mut().zip([screen.cells(), screen.entries.len()]) {
+            if *size < needed {
+                *size = needed + needed / 4;
+            }
+        }
+        Self { of: Arc::clone(room), sizes: *sizes }
+    }
+
+    /// Cells and entries.
+    pub fn sizes(&self) -> [usize; 2] {
+        self.sizes
+    }
+}
+
+/// The same lists behind as much room.
+impl PartialEq for ScreenRoom {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.of, &other.of) && self.sizes == other.sizes
+    }
+}
+
 /// How far rounding may move places for eyes that the same lists serve: those from which no sphere is much farther away.
 pub(super) fn moved_at_most(moved: f64, magnitude: f64) -> f64 {
     moved + 8.0 * Scalar::Double.unit() * magnitude
@@ -87,7 +123,7 @@ impl KeptLists {
         if let Some(kept) = lock(&self.0).iter().find(serves) {
             return kept.leaving.moved(kept.eye - eye);
         }
-        let leaving = make(&enclosure.for_other_eyes(viewed));
+        let leaving = Leaving { room: Some(Room::default()), ..make(&enclosure.for_other_eyes(viewed)) };
         let mut all = lock(&self.0);
         all.retain(|kept| kept.key != key);
         if all.len() == MOST {

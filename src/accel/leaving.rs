@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::bounds::{Enclosure, Rounding};
 use super::density::Density;
 use super::grid::{Grid, below};
+use super::kept::Room;
 use super::light_buffer::LightBuffer;
 use super::{GRID_ROOM, LIGHT_ROOM};
 use crate::effects::{Effect, EffectSet};
@@ -16,6 +17,8 @@ pub(super) struct Leaving {
     pub(super) grid: Option<Grid>,
     pub(super) allowance: f64,
     pub(super) light_allowance: f64,
+    /// Where other eyes have the same: the room for the lists of their screens.
+    pub(super) room: Option<Room>,
 }
 
 impl Leaving {
@@ -34,6 +37,7 @@ impl Leaving {
             grid: grid_in(enclosure, effects, rounding, density),
             allowance: enclosure.with_room(GRID_ROOM, rounding).allowance(),
             light_allowance: for_lights.allowance(),
+            room: None,
         }
     }
 

@@ -24,7 +24,8 @@ use leaving::{Leaving, grid_in};
 pub use bounds::Rounding;
 pub use density::Density;
 pub use grid::{Grid, MAX_LARGE, WALK_SLACK};
-pub use kept::KeptLists;
+pub(crate) use kept::KeptLists;
+pub use kept::ScreenRoom;
 pub use light_buffer::{Face, LightBuffer, REACH};
 pub use lists::Lists;
 pub use screen::{Cover, ScreenLists};
@@ -51,6 +52,8 @@ pub struct Acceleration {
     pub middle: DVec3,
     /// Its radius.
     pub extent: f64,
+    /// Where other eyes have the same lists of lights and the same grid.
+    pub room: Option<ScreenRoom>,
 }
 
 impl Acceleration {
@@ -67,12 +70,13 @@ impl Acceleration {
         let lights: Vec<DVec3> = scene.lights.iter().map(|light| light.position).collect();
         let (middle, extent) = enclosure.ball();
         let make = |enclosure: &Enclosure| Leaving::new(enclosure, &lights, effects, rounding, density);
-        let Leaving { lights, grid, allowance, light_allowance } = match viewed.kept_lists() {
-            Some(kept) => kept.of(viewed, &enclosure, (effects, rounding, *density, viewed.factor()), make),
+        let Leaving { lights, grid, allowance, light_allowance, room } = match viewed.kept() {
+            Some(kept) => kept.lists.of(viewed, &enclosure, (effects, rounding, *density, viewed.factor()), make),
             None => make(&enclosure),
         };
         let screen = ScreenLists::new(&enclosure, &camera, density.longest_tile);
-        Self { screen, lights, grid, allowance, light_allowance, middle, extent }
+        let room = room.map(|room| ScreenRoom::of(&room, &screen.lists));
+        Self { screen, lights, grid, allowance, light_allowance, middle, extent, room }
     }
 
     /// The grid alone.

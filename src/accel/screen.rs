@@ -6,7 +6,8 @@ use super::bounds::{Enclosure, Solid};
 use super::lists::{Binning, Lists};
 use crate::area::Area;
 use crate::camera::Camera;
-use crate::tiles::{Bounds, TILE};
+use crate::census::CHUNK;
+use crate::tiles::{Bounds, Projection, TILE};
 
 /// Entries that all lists together may have, beside some per sphere: more make the tiles larger.
 const MAX_ENTRIES: u64 = 1 << 22;
@@ -14,6 +15,8 @@ const MAX_ENTRIES: u64 = 1 << 22;
 /// Edges of tiles, as powers of two, in pixels: the first that is tried, and the least.
 const FIRST_SHIFT: u32 = TILE.trailing_zeros();
 const LEAST_SHIFT: u32 = 1;
+/// Those that are looked at together.
+const SHIFTS: [u32; 3] = [LEAST_SHIFT, 2, FIRST_SHIFT];
 
 /// Lists of spheres in ascending order of index, one for each tile of pixels.
 #[derive(Debug, Clone, Default)]
@@ -33,7 +36,7 @@ pub struct ScreenLists {
 struct Tiles<'a> {
     /// Where each sphere can be on the picture.
     bounds: &'a [Option<Bounds>],
-    camera: &'a Camera,
+    projection: &'a Projection,
     shift: u32,
     across: u32,
     down: u32,
@@ -44,27 +47,33 @@ impl ScreenLists {
     /// that helps.
     pub(super) fn new(enclosure: &Enclosure, camera: &Camera, longest: f64) -> Self {
         let limit = MAX_ENTRIES.max(8 * enclosure.len() as u64);
+        let projection = Projection::new(camera);
         let bounds = |sphere: usize| {
             let Solid { center, semi_axes } = enclosure.solid(sphere);
-            Bounds::new(center, semi_axes, camera)
+            projection.bounds(center, semi_axes)
         };
         let bounds: Vec<_> = (0..enclosure.len()).into_par_iter().map(bounds).collect();
-        let (width, height) = (camera.width(), camera.height());
+        let (width, height) = projection.size();
         let tiles = |shift: u32| {
             // Whole tiles of the device, which renders what lies beyond the picture, too.
             let [across, down] = [width, height].map(|size| size.next_multiple_of(TILE).div_ceil(1 << shift));
-            Tiles { bounds: &bounds, camera, shift, across, down }
+            Tiles { bounds: &bounds, projection: &projection, shift, across, down }
+        };
+        let first_counts = tiles(FIRST_SHIFT).rectangles(SHIFTS);
+        let count = |tiles: &Tiles| match SHIFTS.iter().position(|&shift| shift == tiles.shift) {
+            Some(at) => first_counts[at],
+            None => tiles.rectangles([tiles.shift])[0],
         };
         let mut chosen = tiles(FIRST_SHIFT);
-        let mut entries = chosen.rectangles();
+        let mut entries = count(&chosen);
         while entries + chosen.cells() as u64 > limit && chosen.cells() > 1 {
             chosen = tiles(chosen.shift + 1);
-            entries = chosen.rectangles();
+            entries = count(&chosen);
         }
         while chosen.shift > LEAST_SHIFT && entries as f64 > longest * chosen.cells() as f64 {
             // Four times as many: among large spheres their lists would be as long as before.
             let smaller = tiles(chosen.shift - 1);
-            let smaller_entries = smaller.rectangles();
+            let smaller_entries = count(&smaller);
             if smaller_entries > 3 * entries || smaller_entries + smaller.cells() as u64 > limit {
                 break;
             }
@@ -145,19 +154,19 @@ impl Cover {
 }
 
 impl Tiles<'_> {
-    /// How many tiles the rectangles around the spheres have.
-    fn rectangles(&self) -> u64 {
-        let Area { left, top, .. } = self.camera.area();
-        let span = |pixels: [u32; 2], first: u32, end: u32| {
-            let cells =
-                common(pixels, first, end).map(|[first, last]| (last >> self.shift) - (first >> self.shift) + 1);
-            u64::from(cells.unwrap_or(0))
+    /// How many tiles the rectangles around the spheres have, for tiles of each of these sizes.
+    fn rectangles<const N: usize>(&self, shifts: [u32; N]) -> [u64; N] {
+        let area = self.projection.area();
+        let add = |sums: [u64; N], bounds: &Bounds| {
+            let (columns, rows) =
+                (common(bounds.columns, area.left, area.right()), common(bounds.rows, area.top, area.bottom()));
+            let (Some(columns), Some(rows)) = (columns, rows) else { return sums };
+            let span = |[first, last]: [u32; 2], shift: u32| u64::from((last >> shift) - (first >> shift) + 1);
+            std::array::from_fn(|at| sums[at] + span(columns, shifts[at]) * span(rows, shifts[at]))
         };
-        let cells = |bounds: &Bounds| {
-            let (right, bottom) = (self.camera.area().right(), self.camera.area().bottom());
-            span(bounds.rows, top, bottom) * span(bounds.columns, left, right)
-        };
-        self.bounds.par_iter().flatten().map(cells).sum()
+        let plus = |a: [u64; N], b: [u64; N]| std::array::from_fn(|at| a[at] + b[at]);
+        let chunk = |bounds: &[Option<Bounds>]| bounds.iter().flatten().fold([0; N], add);
+        self.bounds.par_chunks(CHUNK).map(chunk).reduce(|| [0; N], plus)
     }
 }
 
@@ -172,14 +181,21 @@ impl Binning for Tiles<'_> {
 
     fn visit(&self, rank: usize, emit: &mut impl FnMut(usize, usize)) {
         let Some(bounds) = &self.bounds[rank] else { return };
-        let area = self.camera.area();
+        let area = self.projection.area();
         let Some(rows) = common(bounds.rows, area.top, area.bottom()) else { return };
         let [first, last] = rows.map(|row| row >> self.shift);
+        let tiles =
+            |columns: [u32; 2]| common(columns, area.left, area.right()).map(|ends| ends.map(|x| x >> self.shift));
+        let whole = tiles(bounds.columns);
         for row in first..=last {
-            let columns = bounds.columns_in([row << self.shift, (row + 1) << self.shift], self.camera);
-            let Some([left, right]) = common(columns, area.left, area.right()) else { continue };
+            let ends = if bounds.is_rectangle() {
+                whole
+            } else {
+                tiles(bounds.columns_in([row << self.shift, (row + 1) << self.shift], self.projection))
+            };
+            let Some([left, right]) = ends else { continue };
             let start = row as usize * self.across as usize;
-            emit(start + (left >> self.shift) as usize, start + (right >> self.shift) as usize);
+            emit(start + left as usize, start + right as usize);
         }
     }
 }

@@ -12,7 +12,7 @@ use crate::accel::Acceleration;
 use crate::camera::Camera;
 use crate::effects::{Effect, EffectSet, Effects};
 use crate::exact::ExactScene;
-use crate::geometry::{Ellipsoid, ellipsoids, shape_indices};
+use crate::geometry::{Ellipsoid, ellipsoids};
 use crate::scene::{Light, Sphere};
 use crate::settings::Specular;
 use crate::viewed::ViewedScene;
@@ -115,7 +115,7 @@ impl<T: Real> World<T> {
         let lit = on(Effect::Diffuse) || on(Effect::Specular);
         let ellipsoids = ellipsoids(scene, on(Effect::Ellipsoids));
         let indices = if effects.set.has_secondary_rays() {
-            shape_indices(&scene.spheres, on(Effect::Ellipsoids)).unwrap_or_default()
+            viewed.shape_indices(on(Effect::Ellipsoids)).unwrap_or_default()
         } else {
             Vec::new()
         };

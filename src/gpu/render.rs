@@ -20,17 +20,19 @@ use crate::area::Area;
 use crate::brightness::Scalar;
 use crate::effects::{Effect, Effects};
 use crate::exact::TangentMargin;
-use crate::geometry::{ellipsoid, shape_indices};
+use crate::geometry::ellipsoid;
 use crate::gpu::device::error::Error;
 use crate::gpu::device::timestamps::Timestamps;
 use crate::gpu::facade::Gpu;
 use crate::gpu::kernel::picture::Bounce;
-use crate::gpu::kernel::pipeline::{Pipeline, Resources};
+use crate::gpu::kernel::pipeline::Pipeline;
 use crate::gpu::kernel::specialisation::Specialisation;
 use crate::gpu::kernel::variant::{Kernel, Schedule, Slots, Variant};
 use crate::gpu::shared::{ONE_PATH, SEVERAL_PATHS, dispatch_tiles};
-use crate::gpu::table::bind::{are_too_large, check_fits, copies_fit, copy_resources, list_resources, scene_resources};
+use crate::gpu::table::bind::{add_copies, add_lists, add_scene, are_too_large, check_fits, copies_fit};
 use crate::gpu::table::pack::{Packed, list_contents};
+use crate::gpu::table::pool::{Basis, TablePool, TableSet};
+use crate::kept::Kept;
 use crate::limits;
 use crate::linear::Linear;
 use crate::misuse::check_picture;
@@ -158,7 +160,7 @@ pub struct GpuRenderer<'a, O = Rows> {
 /// Everything that is needed to build the kernels once a tile asks for them.
 #[derive(Debug)]
 struct BuildInputs {
-    resources: Resources,
+    tables: TableSet,
     specialisation: Specialisation,
 }
 
@@ -240,16 +242,20 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
             dispatch_tiles: dispatch_tiles(gpu.device.info.max_uniform),
             ..Specialisation::new(viewed, effects, kernel, tuning, tables)
         };
-        let lists = |density| Acceleration::with_density(viewed, specialisation.effects, rounding, density);
+        let fits = |accel: &Acceleration| !are_too_large(&gpu.device, tables, &list_contents(accel));
+        let lists = |density| {
+            let accel = Acceleration::with_density(viewed, specialisation.effects, rounding, density);
+            // Room for other eyes must not keep a scene from fitting, nor must finer lists than are needed.
+            if fits(&accel) { accel } else { Acceleration { room: None, ..accel } }
+        };
         let mut accel = lists(&tuning.density);
-        // Finer lists than are needed must not keep a scene from fitting.
-        if tuning.density != Density::LEAST && are_too_large(&gpu.device, tables, &list_contents(&accel)) {
+        if tuning.density != Density::LEAST && !fits(&accel) {
             accel = lists(&Density::LEAST);
         }
         let mut specialisation = specialisation.with_grid(accel.grid.as_ref(), tuning);
         let true_axes = effects.set.has(Effect::Ellipsoids);
         let leaves_surfaces = effects.set.has_secondary_rays();
-        let indices = leaves_surfaces.then(|| shape_indices(&scene.spheres, true_axes)).flatten();
+        let indices = leaves_surfaces.then(|| viewed.shape_indices(true_axes)).flatten();
         let tangent_margin = if kernel.tells_tangents() {
             let ellipsoids = scene.spheres.par_iter().map(|sphere| ellipsoid(sphere, true_axes));
             TangentMargin::new(viewed, kernel.rounding().tests).widest(ellipsoids)
@@ -270,11 +276,19 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         let covered_tiles = picture_tiles.min(cover.most());
         // Lists that nobody wants any more go before the spheres take memory on the device.
         let uploading = tracing::info_span!("upload tables").entered();
-        let mut resources = list_resources(&gpu.device, tables, &list_tables)?;
-        resources.extend(copy_resources(&gpu.device, tables, &packed, &accel, &specialisation)?);
+        let pool = viewed.kept().and_then(Kept::tables::<TablePool>);
+        let mut set = TableSet::new(&gpu.device, tables, pool);
+        add_lists(&mut set, &gpu.device, &accel, &list_tables)?;
+        add_copies(&mut set, &gpu.device, &packed, &accel, &specialisation)?;
         drop(list_tables);
         let kept = keep(accel);
-        resources.extend(scene_resources(&gpu.device, tables, &packed, &specialisation)?);
+        let basis = Basis::Materials {
+            effects: effects.set,
+            layout: [kernel.is_double(), options.certified],
+            light: (scene.ambient.to_array(), settings.quantize),
+            factor: viewed.factor(),
+        };
+        add_scene(&mut set, &gpu.device, &packed, &specialisation, basis)?;
         drop(uploading);
         let samples = u64::from(settings.samples_per_side * settings.samples_per_side);
         let tests_per_pixel = samples
@@ -304,7 +318,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
                 Class::Integrated | Class::Discrete => 1,
             },
             work: None,
-            inputs: BuildInputs { resources, specialisation },
+            inputs: BuildInputs { tables: set, specialisation },
             tiles_per_dispatch: tiles.clamp(1, u64::from(specialisation.dispatch_tiles)) as u32,
             times: DeviceTimes::default(),
             submitted: 0,
@@ -371,13 +385,13 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
     fn build(&mut self) -> Result<Work, Error> {
         let start = Instant::now();
         let gpu = self.gpu;
-        let BuildInputs { resources, specialisation } = &self.inputs;
+        let BuildInputs { tables, specialisation } = &self.inputs;
         let (pipelines, used_before) = gpu.pipelines(specialisation)?;
         let capacity = self.capacity();
         let has_bounces = self.max_depth > 0;
         let reserving = tracing::info_span!("reserve buffers").entered();
         let work = gpu.device.checked("reserving buffers", || {
-            Work::new(gpu, pipelines, resources, capacity, specialisation, has_bounces)
+            Work::new(gpu, pipelines, &tables.resources(), capacity, specialisation, has_bounces)
         })?;
         drop(reserving);
         if !used_before {

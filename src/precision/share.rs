@@ -177,6 +177,25 @@ impl Largest {
     }
 }
 
+/// The spheres that are largest, and those that are so beside their distance.
+#[derive(Default)]
+pub(super) struct LargestSpheres {
+    large: Largest,
+    wide: Largest,
+}
+
+impl LargestSpheres {
+    pub(super) fn add(&mut self, index: usize, sphere: &Sphere) {
+        let size = sphere.scale.abs().max_element();
+        self.large.add(size, index);
+        self.wide.add(size * size / sphere.center.length_squared(), index);
+    }
+
+    pub(super) fn plus(self, other: Self) -> Self {
+        Self { large: self.large.plus(other.large), wide: self.wide.plus(other.wide) }
+    }
+}
+
 impl Sums {
     fn none() -> Self {
         Self {
@@ -260,9 +279,9 @@ impl<'a> Shares<'a> {
         }
     }
 
-    /// The shares. `nested` are spheres with another surface so many world units below their own.
-    pub(super) fn estimate(&self, nested: &[(usize, f64)]) -> [Extreme; 3] {
-        let chosen = chosen(self.scene.spheres.len(), ALONE, || self.largest());
+    /// The shares, given the largest of its spheres; `nested` are those with another surface so many world units below their own.
+    pub(super) fn estimate(&self, largest: &LargestSpheres, nested: &[(usize, f64)]) -> [Extreme; 3] {
+        let chosen = chosen(self.scene.spheres.len(), ALONE, || indices(&largest.large, &largest.wide));
         let chunk = |chosen: &[(usize, f64)]| {
             let mut sums = Sums::none();
             for &(index, weight) in chosen {
@@ -277,22 +296,6 @@ impl<'a> Shares<'a> {
         let covered = sums.area / self.frame.area();
         let visible = visible_part(covered) / self.frame.area();
         Tier::ALL.map(|tier| Extreme { value: sums.changed[tier as usize] * visible, ..sums.greatest[tier as usize] })
-    }
-
-    /// The spheres that are largest, and those that are so beside their distance.
-    fn largest(&self) -> Vec<usize> {
-        let chunk = |(chunk, spheres): (usize, &[Sphere])| {
-            let (mut large, mut wide) = (Largest::default(), Largest::default());
-            for (place, sphere) in spheres.iter().enumerate() {
-                let (size, index) = (sphere.scale.abs().max_element(), chunk * CHUNK + place);
-                large.add(size, index);
-                wide.add(size * size / sphere.center.length_squared(), index);
-            }
-            (large, wide)
-        };
-        let found = self.scene.spheres.par_chunks(CHUNK).enumerate().map(chunk);
-        let (large, wide) = found.reduce(Default::default, |a, b| (a.0.plus(b.0), a.1.plus(b.1)));
-        indices(&large, &wide)
     }
 
     fn seen(&self, sphere: &Sphere) -> Option<Seen> {

@@ -1,8 +1,8 @@
 //! One scene and many eyes.
 
 use super::{Error, Renderer, check_room, effects_of};
-use crate::accel::KeptLists;
 use crate::film::Picture;
+use crate::kept::Kept;
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::view::View;
@@ -30,7 +30,7 @@ pub struct Views<'a> {
     renderer: &'a Renderer,
     scene: &'a Scene,
     settings: Settings,
-    kept: KeptLists,
+    kept: Kept,
 }
 
 impl Renderer {
@@ -42,7 +42,7 @@ impl Renderer {
     pub fn views<'a>(&'a self, scene: &'a Scene, settings: &Settings) -> Result<Views<'a>, Error> {
         scene.check()?;
         check_room(scene)?;
-        Ok(Views { renderer: self, scene, settings: *settings, kept: KeptLists::default() })
+        Ok(Views { renderer: self, scene, settings: *settings, kept: Kept::default() })
     }
 }
 

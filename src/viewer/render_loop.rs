@@ -14,6 +14,7 @@ use super::session_renderer::{Context, SessionRenderer};
 use super::view_state::ViewState;
 use super::wake_signal::WakeSignal;
 use crate::gpu::{self, Gpu};
+use crate::kept::Kept;
 use crate::panics::message;
 use crate::scene::Scene;
 use crate::threads::lock;
@@ -115,14 +116,16 @@ impl RenderLoop {
         costs: &mut CostModel,
         warm_up: &Arc<Session>,
     ) -> Result<(), gpu::Error> {
-        let mut error = None;
+        let (mut error, mut kept) = (None, Kept::default());
         let mut revision = 0;
         let mut renderers: Vec<SessionRenderer> = Vec::new();
         if !warm_up.is_closed() {
             renderers.push(SessionRenderer::new(Arc::clone(warm_up), gpu, *costs));
         }
         while !self.quit.load(Ordering::Relaxed) {
-            self.reload_scene(scene, &mut revision, &mut error, &mut renderers);
+            if self.reload_scene(scene, &mut revision, &mut error, &mut renderers) {
+                kept = Kept::default();
+            }
             self.update_renderers(&mut renderers, warm_up, gpu, *costs);
             let busy = renderers.iter().filter(|renderer| renderer.has_work()).count();
             if busy == 0 {
@@ -136,6 +139,7 @@ impl RenderLoop {
                 *lock(&self.current) = Some((Arc::clone(&renderer.session), renderer.session.version()));
                 let result = renderer.advance(&mut Context {
                     scene,
+                    kept: &kept,
                     scene_file: &scene_file,
                     error: error.as_ref(),
                     busy,
@@ -153,16 +157,17 @@ impl RenderLoop {
         Ok(())
     }
 
+    /// Whether there is another scene now.
     fn reload_scene(
         &self,
         scene: &mut Scene,
         revision: &mut u64,
         error: &mut Option<SceneError>,
         renderers: &mut [SessionRenderer],
-    ) {
+    ) -> bool {
         let mut slot = lock(&self.scene_file.slot);
         if slot.revision == *revision {
-            return;
+            return false;
         }
         *revision = slot.revision;
         error.clone_from(&slot.error);
@@ -181,6 +186,7 @@ impl RenderLoop {
             }
             renderer.scene_changed(replaced);
         }
+        replaced
     }
 
     /// One renderer for each session.

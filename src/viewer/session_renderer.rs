@@ -20,11 +20,12 @@ use super::view_state::ViewState;
 use crate::effects::Effects;
 use crate::engine::{Backend, ms};
 use crate::gpu::{self, Gpu};
+use crate::kept::Kept;
 use crate::limits;
 use crate::precision::{Selection, Tier};
 use crate::scene::Scene;
 use crate::settings::Settings;
-use coarse::{Framing, fitted, framed};
+use coarse::{Framing, Shown, fitted, framed};
 use pass::{FrameStats, Pass};
 use reduced::{MANY_SPHERES, Reduced};
 
@@ -70,12 +71,12 @@ struct Plan {
 }
 
 impl Plan {
-    /// For `scene` as `view` asks for it.
-    fn of(scene: &mut Scene, settings: &Settings, view: &ViewState, gpu: Option<&Gpu>) -> Self {
+    /// For a scene as `view` asks for it.
+    fn of((scene, kept): Shown, settings: &Settings, view: &ViewState, gpu: Option<&Gpu>) -> Self {
         let size = (scene.width, scene.height);
         let framing = view.fov.and_then(|fov| Scene::new(fov.window(scene.window.near, size), 1, 1).check().err());
         framed(scene, (size, view.fov), |scene| {
-            let viewed = scene.viewed(settings);
+            let viewed = scene.viewed_by(settings, kept);
             let effects = Effects::requested(&viewed, &view.effects);
             let selection = Selection::of(&viewed, &effects, view.precision, gpu.map_or(&Tier::ALL[..], Gpu::ladder));
             let refused = || effects.too_deep(scene).or_else(|| limits::problem(&viewed, &effects));
@@ -111,12 +112,21 @@ pub(super) struct SessionRenderer<'g> {
 #[derive(Debug)]
 pub(super) struct Context<'s> {
     pub(super) scene: &'s mut Scene,
+    /// What its pictures leave to the next eye.
+    pub(super) kept: &'s Kept,
     pub(super) scene_file: &'s str,
     pub(super) error: Option<&'s SceneError>,
     /// Pages that have work.
     pub(super) busy: usize,
     /// Pixels that the page may have.
     pub(super) pixels: u64,
+}
+
+impl Context<'_> {
+    /// The scene, with what its pictures leave to the next eye.
+    fn shown(&mut self) -> Shown<'_> {
+        (self.scene, Some(self.kept))
+    }
 }
 
 impl<'g> SessionRenderer<'g> {
@@ -183,7 +193,7 @@ impl<'g> SessionRenderer<'g> {
     }
 
     fn try_advance(&mut self, context: &mut Context) -> Result<(), gpu::Error> {
-        let is_large = context.scene.spheres.len() > MANY_SPHERES;
+        let is_large = self.moves_in_part(context);
         if self.is_outdated() && (is_large || !self.pass.as_ref().is_some_and(|pass| pass.first)) {
             match self.reduced.shown {
                 _ if !is_large => self.start_job(context)?,
@@ -219,6 +229,12 @@ impl<'g> SessionRenderer<'g> {
         self.measure(context)
     }
 
+    /// Whether a part of the spheres is shown while the eye moves: there are many, and to prepare all of them has taken too long.
+    fn moves_in_part(&self, context: &Context) -> bool {
+        let is_soon = self.costs.measured && self.costs.prepare_ms <= FRAME_MS;
+        context.scene.spheres.len() > MANY_SPHERES && !is_soon
+    }
+
     /// Plans the pictures of the newest view.
     fn start_job(&mut self, context: &mut Context) -> Result<(), gpu::Error> {
         let start = Instant::now();
@@ -226,7 +242,7 @@ impl<'g> SessionRenderer<'g> {
         let settings = view.settings();
         let asked = view.size(context.scene);
         let size = fitted(asked, context.pixels);
-        let Plan { effects, selection, problem } = Plan::of(context.scene, &settings, &view, self.gpu);
+        let Plan { effects, selection, problem } = Plan::of(context.shown(), &settings, &view, self.gpu);
         if self.canvas.size() != size {
             self.canvas = Canvas::new(size);
         }

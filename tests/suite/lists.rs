@@ -3,12 +3,13 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use trueray::accel::{Acceleration, Density, KeptLists, Lists, Rounding};
+use trueray::accel::{Acceleration, Density, Lists, Rounding};
 use trueray::cpu::Reference;
 use trueray::effects::{EffectSet, Effects};
 use trueray::engine::{Backend, Engine, Options, render_picture};
 use trueray::gpu::{Gpu, GpuRenderer, Kernel};
-use trueray::precision::Tier;
+use trueray::kept::Kept;
+use trueray::precision::{Request, Selection, Tier};
 use trueray::scene::{Scene, Sphere};
 use trueray::settings::Settings;
 use trueray::stress::Random;
@@ -328,7 +329,7 @@ fn lists_that_eyes_share_leave_out_nothing() {
     let renderers: Vec<Option<Kernel>> = kernels.map(Some).chain([None]).collect();
     for kernel in renderers {
         for seed in 0..if kernel.is_some() { KINDS } else { 4 * KINDS } {
-            let (scene, kept) = (random_scene(seed), KeptLists::default());
+            let (scene, kept) = (random_scene(seed), Kept::default());
             let mut random = Random::new(5, seed);
             for eye in 0..3 {
                 let settings = Settings { view: random_eye(&mut random, &scene), ..settings_of(seed) };
@@ -350,10 +351,29 @@ fn lists_that_eyes_share_leave_out_nothing() {
     }
 }
 
+/// The lists of the screen, what is said of effects and the choice of a tier are those of an eye that comes alone.
+#[test]
+fn eyes_that_share_find_what_each_finds_alone() {
+    for seed in 0..8 * KINDS {
+        let (scene, kept) = (random_scene(seed), Kept::default());
+        let mut random = Random::new(6, seed);
+        for eye in 0..4 {
+            let settings = Settings { view: random_eye(&mut random, &scene), ..settings_of(seed) };
+            let found = [scene.viewed(&settings), scene.viewed_again(&settings, &kept)].map(|viewed| {
+                let effects = Effects::of(&viewed);
+                let selection = Selection::of(&viewed, &effects, Request::Auto, &Tier::ALL);
+                let accel = Acceleration::new(&viewed, effects.set, Rounding::SINGLE);
+                (effects, selection, accel.screen.shift, accel.screen.lists)
+            });
+            assert!(found[0] == found[1], "scene {seed}, eye {eye}");
+        }
+    }
+}
+
 #[test]
 fn lists_are_kept_for_eyes_that_are_near_each_other() {
     let scene = random_scene(1);
-    let kept = KeptLists::default();
+    let kept = Kept::default();
     let lists = |x: f64| {
         let view = View::new(DVec3::new(x, 0.0, 0.0), None, DVec3::Y).unwrap();
         let viewed = scene.viewed_again(&Settings { view, ..Settings::default() }, &kept);
@@ -365,8 +385,9 @@ fn lists_are_kept_for_eyes_that_are_near_each_other() {
     assert!(is_same(grids[0], grids[1]) && !is_same(grids[0], grids[2]));
     assert!(!first.lights.lists.is_empty() && is_same(&first.lights.lists[0], &near.lights.lists[0]));
     assert!(first.screen.lists != near.screen.lists);
+    assert!(first.room.is_some() && first.room == near.room && first.room != far.room, "the same place in tables");
 
-    let kept = KeptLists::default();
+    let kept = Kept::default();
     let mut lit = scene.clone();
     lit.lights[0].position += DVec3::X / 64.0;
     let [before, again, moved] = [&scene, &scene, &lit].map(|scene| {

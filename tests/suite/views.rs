@@ -7,13 +7,15 @@ use std::process::{Command, Output};
 use glam::DVec3;
 use serde_json::Value;
 use tempfile::TempDir;
-use trueray::accel::KeptLists;
 use trueray::effects::Effects;
 use trueray::engine::{Backend, Engine, Options, render_picture};
 use trueray::film::Picture;
+use trueray::gpu::Gpu;
+use trueray::kept::Kept;
 use trueray::precision::Tier;
 use trueray::scene::Scene;
 use trueray::settings::Settings;
+use trueray::tuning::Tuning;
 use trueray::verify::Verify;
 use trueray::view::View;
 use trueray::views::{Frame, NoCenter, Placement, table, turntable};
@@ -94,7 +96,7 @@ fn frames_are_the_pictures_of_single_runs_at_every_tier() {
         let mut scene = scene(&root().join("scenes").join(name));
         (scene.width, scene.height) = (56, 40);
         for backend in backends {
-            let kept = KeptLists::default();
+            let kept = Kept::default();
             for (number, view) in views.into_iter().enumerate() {
                 let settings = Settings { view, ..Settings::default() };
                 let picture = |viewed| {
@@ -106,6 +108,93 @@ fn frames_are_the_pictures_of_single_runs_at_every_tier() {
                 let single = picture(scene.viewed(&settings));
                 assert!(picture(scene.viewed_again(&settings, &kept)) == single, "{name}, {backend:?}, view {number}");
             }
+        }
+    }
+}
+
+/// What one frame leaves to the next is what that needs, whatever is another's between them: size, window, light, levels, effects, the tier.
+#[test]
+fn what_frames_share_is_made_anew_where_it_differs() {
+    let Some(mut gpu) = gpu("what_frames_share_is_made_anew_where_it_differs") else { return };
+    let own = gpu.tuned().tuning;
+    for texture_tables in [true, false] {
+        gpu.set_tuning(Tuning { texture_tables, ..own }).unwrap();
+        let kept = Kept::default();
+        (0..24).for_each(|number| assert_frame_is_that_of_a_single_run(&gpu, number, &kept));
+    }
+    gpu.set_tuning(own).unwrap();
+}
+
+/// Of frames that differ in all that frames can, some in this and some in that.
+fn assert_frame_is_that_of_a_single_run(gpu: &Gpu, number: u32, kept: &Kept) {
+    let mut scene = scene(&root().join("scenes/show/showcase.txt"));
+    (scene.width, scene.height) = [(40, 24), (64, 48), (24, 56)][number as usize / 2 % 3];
+    scene.window.right += f64::from(number % 3);
+    scene.ambient *= f64::from(1 + number / 6 % 2);
+    scene.lights[0].intensity *= f64::from(1 + number / 5 % 2);
+    let x = 0.25 * f64::from(number);
+    let settings = if (number / 4).is_multiple_of(2) { Settings::classic() } else { Settings::exact() };
+    let settings = Settings { view: view([x, 0.2, x], Some([0.0, 0.0, -10.0])), ..settings };
+    let request = if number % 7 == 6 { "-ambient,-shadows" } else { "auto" }.parse().unwrap();
+    let device = |tier| Backend::Device(gpu, tier);
+    let certified = Backend::Certified(gpu, Tier::Fast);
+    let backend = [device(Tier::Fast), certified, device(Tier::Robust), device(Tier::Double)][number as usize / 3 % 4];
+    let picture = |viewed| {
+        let effects = Effects::requested(&viewed, &request);
+        let mut engine = Engine::new(backend, viewed, &effects).unwrap();
+        render_picture(&mut engine).unwrap().0
+    };
+    let single = picture(scene.viewed(&settings));
+    assert!(picture(scene.viewed_again(&settings, kept)) == single, "frame {number}, {backend:?}");
+}
+
+/// Eyes so far apart that kernels have other units for them: nothing that has a length goes from one to the other.
+#[test]
+fn frames_in_other_units_share_no_length() {
+    let Some(gpu) = gpu("frames_in_other_units_share_no_length") else { return };
+    let mut scene = scene_of(SCENE);
+    (scene.width, scene.height) = (40, 32);
+    for sphere in &mut scene.spheres {
+        (sphere.center, sphere.scale) = (sphere.center * 1.4e8, sphere.scale * 1.4e8);
+    }
+    scene.lights[0].position *= 1.4e8;
+    let device = |tier| Backend::Device(&gpu, tier);
+    for backend in [device(Tier::Fast), device(Tier::Double), Backend::Reference] {
+        let (kept, mut factors) = (Kept::default(), Vec::new());
+        for z in [1e6, 3e8, 2e6, 3.1e8, 3e8] {
+            let settings = Settings { view: view([0.0, 0.0, z], None), ..Settings::default() };
+            let picture = |viewed| {
+                let effects = Effects::of(&viewed);
+                render_picture(&mut Engine::new(backend, viewed, &effects).unwrap()).unwrap().0
+            };
+            let single = picture(scene.viewed(&settings));
+            factors.push(scene.viewed(&settings).factor());
+            assert!(picture(scene.viewed_again(&settings, &kept)) == single, "{backend:?}, z {z}");
+            assert!(single.chunks(3).any(|pixel| pixel != &single[..3]), "z {z}: nothing is seen");
+        }
+        assert!(factors[0] == factors[2] && factors[0] != factors[1], "{factors:?}");
+    }
+}
+
+/// Each frame is prepared while the one before it is still to be rendered, as in a film; some eyes come back.
+#[test]
+fn frames_at_once_have_tables_of_their_own() {
+    let Some(gpu) = gpu("frames_at_once_have_tables_of_their_own") else { return };
+    let mut scene = scene(&root().join("scenes/show/showcase.txt"));
+    (scene.width, scene.height) = (48, 32);
+    let kept = Kept::default();
+    let settings =
+        |x: u32| Settings { view: view([f64::from(x), 0.0, 0.0], Some([0.0, 0.0, -9.0])), ..Settings::default() };
+    let engine = |viewed| {
+        let effects = Effects::of(&viewed);
+        Engine::new(Backend::Device(&gpu, Tier::Fast), viewed, &effects).unwrap()
+    };
+    let mut before: Option<(Engine, u32)> = None;
+    for x in [0, 1, 2, 0, 3, 3, 4] {
+        let next = engine(scene.viewed_again(&settings(x), &kept));
+        if let Some((mut frame, x)) = before.replace((next, x)) {
+            let expected = render_picture(&mut engine(scene.viewed(&settings(x)))).unwrap().0;
+            assert!(render_picture(&mut frame).unwrap().0 == expected, "eye {x}");
         }
     }
 }

@@ -41,9 +41,14 @@ impl<'a> Contents<'a> {
 
     /// Elements of so many bytes, by their indices among those in `all`.
     pub(crate) fn gathered(all: &'a [u8], size: usize, indices: &'a [u32]) -> Self {
-        let write = move |range: Range<usize>, bytes: &mut [u8]| {
-            for (place, &index) in bytes.chunks_exact_mut(size).zip(&indices[range]) {
-                place.copy_from_slice(&all[index as usize * size..][..size]);
+        let write = move |range: Range<usize>, bytes: &mut [u8]| match size {
+            // A copy of a size that the compiler knows is no call.
+            16 => gather::<16>(all, &indices[range], bytes),
+            32 => gather::<32>(all, &indices[range], bytes),
+            _ => {
+                for (place, &index) in bytes.chunks_exact_mut(size).zip(&indices[range]) {
+                    place.copy_from_slice(&all[index as usize * size..][..size]);
+                }
             }
         };
         Self { count: indices.len(), size, write: Box::new(write) }
@@ -101,5 +106,13 @@ impl<'a> Contents<'a> {
         let pieces = bytes.par_chunks_mut(piece.max(1)).enumerate();
         pieces.for_each(|(index, bytes)| self.write(index * piece, bytes));
         bytes
+    }
+}
+
+/// Copies elements of `N` bytes by their indices.
+fn gather<const N: usize>(all: &[u8], indices: &[u32], bytes: &mut [u8]) {
+    let (elements, places) = (all.as_chunks::<N>().0, bytes.as_chunks_mut::<N>().0);
+    for (place, &index) in places.iter_mut().zip(indices) {
+        *place = elements[index as usize];
     }
 }

@@ -25,7 +25,7 @@ pub(crate) fn upload(
             device.raw.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation })
         };
         if device.mappable && contents.len() > 0 {
-            let buffer = create(usage | wgpu::BufferUsages::MAP_WRITE, true);
+            let buffer = create(usage | wgpu::BufferUsages::MAP_WRITE | wgpu::BufferUsages::COPY_DST, true);
             if let Ok(mut view) = buffer.get_mapped_range_mut(..contents.len() as u64) {
                 write(contents, 0, view.slice(..));
             }
@@ -33,19 +33,29 @@ pub(crate) fn upload(
             return Ok(buffer);
         }
         let buffer = create(usage | wgpu::BufferUsages::COPY_DST, false);
-        for start in (0..contents.len()).step_by(BAND) {
-            let len = BAND.min(contents.len() - start) as u64;
-            let view =
-                wgpu::BufferSize::new(len).and_then(|len| device.queue.write_buffer_with(&buffer, start as u64, len));
-            if let Some(mut view) = view {
-                write(contents, start, view.slice(..));
-            }
-            // Only then is the memory on the way free for the next band.
-            device.submit(None);
-            device.wait()?;
-        }
+        fill_buffer(device, &buffer, contents, contents.len())?;
         Ok(buffer)
     })?
+}
+
+/// Writes so many bytes of `contents`.
+pub(crate) fn fill_buffer(
+    device: &Device,
+    buffer: &wgpu::Buffer,
+    contents: &Contents,
+    len: usize,
+) -> Result<(), Error> {
+    for start in (0..len).step_by(BAND) {
+        let len = BAND.min(len - start) as u64;
+        let view = wgpu::BufferSize::new(len).and_then(|len| device.queue.write_buffer_with(buffer, start as u64, len));
+        if let Some(mut view) = view {
+            write(contents, start, view.slice(..));
+        }
+        // Only then is the memory on the way free for the next band.
+        device.submit(None);
+        device.wait()?;
+    }
+    Ok(())
 }
 
 /// A small buffer with `contents`.
@@ -123,16 +133,33 @@ pub(crate) fn texels(
     components: u32,
     usage: wgpu::TextureUsages,
 ) -> Result<wgpu::TextureView, Error> {
-    let format = texel_format(components);
-    let row = (ROW * components * 4) as usize;
+    let rows = contents.len().div_ceil(row_bytes(components)).max(1) as u32;
+    let texture = texture(device, rows, texel_format(components), usage | wgpu::TextureUsages::COPY_DST);
+    fill_texels(device, &texture, contents, components, contents.len())?;
+    Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
+}
+
+/// Bytes of a row of texels.
+fn row_bytes(components: u32) -> usize {
+    (ROW * components * 4) as usize
+}
+
+/// Writes so many bytes of `contents`, or those of whole rows.
+pub(crate) fn fill_texels(
+    device: &Device,
+    texture: &wgpu::Texture,
+    contents: &Contents,
+    components: u32,
+    len: usize,
+) -> Result<(), Error> {
+    let row = row_bytes(components);
+    let end = len.next_multiple_of(row).min(contents.len());
     // Whole rows of whole elements of every size.
     let band = BAND.next_multiple_of(3 * row);
     let extent = |rows: usize| wgpu::Extent3d { width: ROW, height: rows as u32, depth_or_array_layers: 1 };
-    let usage = usage | wgpu::TextureUsages::COPY_DST;
-    let texture = texture(device, contents.len().div_ceil(row).max(1) as u32, format, usage);
     let mut on_the_way = None;
-    for start in (0..contents.len()).step_by(band) {
-        let len = band.min(contents.len() - start);
+    for start in (0..end).step_by(band) {
+        let len = band.min(end - start);
         let rows = len.div_ceil(row);
         let staging = device.raw.create_buffer(&wgpu::BufferDescriptor {
             label: None,
@@ -159,7 +186,7 @@ pub(crate) fn texels(
             device.wait_until(Some(&before))?;
         }
     }
-    Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
+    Ok(())
 }
 
 /// Packs what lies from byte `start` on.

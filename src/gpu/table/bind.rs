@@ -1,31 +1,15 @@
 //! The buffers and textures of a scene, and whether a device holds them.
 
 use super::pack::Packed;
+use super::pool::{Basis, TableSet, storage_buffer, texture_usage};
 use crate::accel::Acceleration;
 use crate::gpu::device::contents::Contents;
 use crate::gpu::device::error::Error;
 use crate::gpu::device::open::Device;
-use crate::gpu::device::upload::{empty_texels, max_texels, upload, upload_texels};
-use crate::gpu::kernel::pipeline::{Resource, Resources};
+use crate::gpu::device::upload::{empty_texels, max_texels, upload};
+use crate::gpu::kernel::pipeline::Resource;
 use crate::gpu::kernel::specialisation::Specialisation;
 use crate::gpu::kernel::variant::Tables;
-
-/// How textures that are tables are bound; `None` for tables in buffers.
-fn texture_usage(tables: Tables) -> Option<wgpu::TextureUsages> {
-    match tables {
-        Tables::Buffers => None,
-        Tables::Stored => Some(wgpu::TextureUsages::STORAGE_BINDING),
-        Tables::Sampled => Some(wgpu::TextureUsages::TEXTURE_BINDING),
-    }
-}
-
-/// A table with `contents`, of so many `u32` a texel where it is a texture.
-pub(crate) fn table(device: &Device, tables: Tables, contents: &Contents, components: u32) -> Result<Resource, Error> {
-    match texture_usage(tables) {
-        None => storage_buffer(device, contents),
-        Some(usage) => upload_texels(device, contents, components, usage).map(Resource::Texels),
-    }
-}
 
 /// A table for so many bytes that kernels keep and read.
 pub(crate) fn empty_table(device: &Device, tables: Tables, size: u64, components: u32) -> Resource {
@@ -37,12 +21,6 @@ pub(crate) fn empty_table(device: &Device, tables: Tables, size: u64, components
         }
         Some(usage) => Resource::Texels(empty_texels(device, size, components, usage)),
     }
-}
-
-fn storage_buffer(device: &Device, contents: &Contents) -> Result<Resource, Error> {
-    // A binding of size 0 is not allowed.
-    let size = contents.len().max(64);
-    upload(device, contents, wgpu::BufferUsages::STORAGE, size).map(Resource::Buffer)
 }
 
 /// Greatest size of a table, in bytes.
@@ -57,13 +35,20 @@ fn max_buffer(device: &Device) -> u64 {
     device.info.max_storage_binding.min(device.info.max_buffer)
 }
 
-/// The lists, by name.
-pub(crate) fn list_resources(
+/// Adds the lists.
+pub(crate) fn add_lists(
+    set: &mut TableSet,
     device: &Device,
-    tables: Tables,
+    accel: &Acceleration,
     [cells, entries]: &[Contents; 2],
-) -> Result<Resources, Error> {
-    Ok(vec![("cells", table(device, tables, cells, 2)?), ("entries", table(device, tables, entries, 2)?)])
+) -> Result<(), Error> {
+    // Those of the screen are the first.
+    let screen = &accel.screen.lists;
+    let [changed_cells, changed_entries] =
+        [screen.cells() * cells.element_size(), screen.entries.len() * entries.element_size()];
+    let basis = || accel.room.clone().map(Basis::Lists);
+    set.add_changed(device, "cells", (cells, 2), basis(), changed_cells)?;
+    set.add_changed(device, "entries", (entries, 2), basis(), changed_entries)
 }
 
 /// Whether the device has room for the shapes in the order of the grid's lists.
@@ -72,60 +57,57 @@ pub(crate) fn copies_fit(device: &Device, tables: Tables, packed: &Packed, accel
     (entries * packed.shapes[0].element_size()) as u64 <= max_table(device, tables, 4)
 }
 
-/// The shapes in the order of the grid's lists, by name, where kernels read them so.
-pub(crate) fn copy_resources(
+/// Adds the shapes in the order of the grid's lists, where kernels read them so.
+pub(crate) fn add_copies(
+    set: &mut TableSet,
     device: &Device,
-    tables: Tables,
     packed: &Packed,
     accel: &Acceleration,
     specialisation: &Specialisation,
-) -> Result<Resources, Error> {
-    let Some(grid) = accel.grid.as_ref().filter(|_| specialisation.variant().copies()) else { return Ok(Vec::new()) };
-    let texels = |half: &Contents, entries: &[u32]| {
+) -> Result<(), Error> {
+    let Some(grid) = accel.grid.as_ref().filter(|_| specialisation.variant().copies()) else { return Ok(()) };
+    let mut add = |name, half: &Contents, entries: &[u32]| {
         // Packed once: to pack the spheres in any order takes far longer than to copy them so.
         let all = half.bytes();
         let contents = Contents::gathered(&all, half.element_size(), entries);
-        table(device, tables, &contents, 4)
+        set.add(device, name, &contents, 4)
     };
     let [first, second] = &packed.shapes;
     let entries = &grid.lists.entries;
     let ends = if specialisation.reads_shape_ends() { &entries[..] } else { &[] };
     let none = Contents::none();
     let second = if ends.is_empty() { &none } else { second };
-    Ok(vec![("grid_shapes", texels(first, entries)?), ("grid_shape_ends", texels(second, ends)?)])
+    add("grid_shapes", first, entries)?;
+    add("grid_shape_ends", second, ends)
 }
 
-/// The buffers and textures of the scene, by name, beside those of the lists.
-pub(crate) fn scene_resources(
+/// Adds the buffers and textures of the scene beside those of the lists; `basis` is that of the materials.
+pub(crate) fn add_scene(
+    set: &mut TableSet,
     device: &Device,
-    tables: Tables,
     packed: &Packed,
     specialisation: &Specialisation,
-) -> Result<Resources, Error> {
+    basis: Basis,
+) -> Result<(), Error> {
     let params = upload(device, &packed.params, wgpu::BufferUsages::UNIFORM, packed.params.len())?;
-    let vectors = |contents: &Contents| table(device, tables, contents, 4);
+    set.add_own("given_params", Resource::Buffer(params));
     let none = Contents::none();
-    let second_half = |half| vectors(if specialisation.reads_shape_ends() { half } else { &none });
-    let mut resources = vec![
-        ("given_params", Resource::Buffer(params)),
-        ("shapes", vectors(&packed.shapes[0])?),
-        ("shape_ends", second_half(&packed.shapes[1])?),
-        ("materials", vectors(&packed.materials)?),
-        ("lights", vectors(&packed.lights)?),
-        ("window", vectors(&packed.window)?),
-        ("faces", vectors(&packed.faces)?),
-    ];
+    let second_half = |half| if specialisation.reads_shape_ends() { half } else { &none };
+    set.add(device, "shapes", &packed.shapes[0], 4)?;
+    set.add(device, "shape_ends", second_half(&packed.shapes[1]), 4)?;
+    set.add_changed(device, "materials", (&packed.materials, 4), Some(basis), 0)?;
+    set.add(device, "lights", &packed.lights, 4)?;
+    set.add(device, "window", &packed.window, 4)?;
+    set.add(device, "faces", &packed.faces, 4)?;
     if specialisation.refraction.is_some() {
-        resources.push(("glasses", storage_buffer(device, &packed.glasses)?));
+        set.add_own("glasses", storage_buffer(device, &packed.glasses)?);
     }
     if let Some(([first, second], lights)) = &packed.low {
-        resources.extend([
-            ("shapes_low", vectors(first)?),
-            ("shape_ends_low", second_half(second)?),
-            ("lights_low", vectors(lights)?),
-        ]);
+        set.add(device, "shapes_low", first, 4)?;
+        set.add(device, "shape_ends_low", second_half(second), 4)?;
+        set.add(device, "lights_low", lights, 4)?;
     }
-    Ok(resources)
+    Ok(())
 }
 
 /// What the tables of a scene take, each with what the device holds of its kind.

@@ -102,6 +102,8 @@ pub trait Layout {
     fn residual(x: f64) -> f64;
     fn params(values: &ParamValues) -> Self::Params;
     fn shape(values: &ShapeValues) -> Self::Shape;
+    /// The halves of a shape, which are texels or two of them.
+    fn halves(shape: Self::Shape) -> [[Self::Real; 4]; 2];
     /// `ambient` are the levels of its ambient light, as a number.
     fn material(sphere: &scene::Sphere, scale: DVec3, ambient: f64) -> Self::Material;
     fn light(light: &scene::Light) -> Self::Light;
@@ -332,6 +334,10 @@ macro_rules! layout {
                         index: values.index,
                         ..Shape::zeroed()
                     }
+                }
+
+                fn halves(shape: Shape) -> [[$real; 4]; 2] {
+                    bytemuck::cast(shape)
                 }
 
                 fn material(sphere: &scene::Sphere, scale: DVec3, ambient: f64) -> Material {

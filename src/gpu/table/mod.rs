@@ -3,3 +3,4 @@
 pub(crate) mod bind;
 pub mod layout;
 pub(crate) mod pack;
+pub(crate) mod pool;

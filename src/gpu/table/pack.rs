@@ -6,7 +6,7 @@ use bytemuck::Pod;
 use glam::DVec3;
 
 use super::layout::{ConeValues, Layout, ListValues, ParamValues, ShapeValues, double, single};
-use crate::accel::{Acceleration, Lists};
+use crate::accel::{Acceleration, Lists, ScreenRoom};
 use crate::camera::Camera;
 use crate::effects::{Effect, Effects};
 use crate::geometry::{Ellipsoid, ellipsoid};
@@ -120,15 +120,14 @@ fn pack<'a, L: Layout + 'a>(
         L::material(sphere, scale, levels(scene.ambient * sphere.color * ambient))
     };
     let faces = accel.lights.faces.iter().zip(bases.iter().skip(1));
-    let faces: Vec<_> = faces.flat_map(|(faces, &base)| faces.map(|face| (face, base))).collect();
+    let faces: Vec<_> = faces.flat_map(|(faces, &[base, _])| faces.map(|face| (face, base))).collect();
     let (spheres, lights) = (scene.spheres.len(), &scene.lights);
-    let half = size_of::<L::Shape>() / 2;
     let halves = |low: bool| {
-        [0..half, half..2 * half].map(|part| {
+        [0, 1].map(|half| {
             let shape = shape.clone();
-            Contents::part(spheres, part, move |i| {
+            Contents::new(spheres, move |i| {
                 let shape = shape(i);
-                L::shape(&if low { low_shape::<L>(&shape) } else { shape })
+                L::halves(L::shape(&if low { low_shape::<L>(&shape) } else { shape }))[half]
             })
         })
     };
@@ -150,37 +149,42 @@ fn pack<'a, L: Layout + 'a>(
     }
 }
 
-/// All lists in the order of the buffer: tiles, lights, grid.
-fn all_lists(accel: &Acceleration) -> impl Iterator<Item = &Lists> {
-    std::iter::once(&accel.screen.lists).chain(&accel.lights.lists).chain(accel.grid.iter().map(|grid| &grid.lists))
+/// All lists in the order of the buffer: tiles, lights, grid; each with the cells and the entries that it has room for.
+fn all_lists(accel: &Acceleration) -> impl Iterator<Item = (&Lists, [usize; 2])> {
+    let own = |lists: &Lists| [lists.cells(), lists.entries.len()];
+    let screen = &accel.screen.lists;
+    let room = accel.room.as_ref().map_or(own(screen), ScreenRoom::sizes);
+    let others = accel.lights.lists.iter().chain(accel.grid.iter().map(|grid| &grid.lists));
+    std::iter::once((screen, room)).chain(others.map(move |lists| (lists, own(lists))))
 }
 
-/// Where in the cells of all lists those of each begin. What no `u32` holds is refused before it is packed, like all that no texture
-/// holds.
-fn list_bases(accel: &Acceleration) -> Vec<usize> {
-    let next = |base: &mut usize, lists: &Lists| Some(std::mem::replace(base, *base + lists.cells()));
-    all_lists(accel).scan(0, next).collect()
-}
-
-/// Likewise in the entries.
-fn entry_bases(accel: &Acceleration) -> impl Iterator<Item = usize> {
-    let next = |base: &mut usize, lists: &Lists| Some(std::mem::replace(base, *base + lists.entries.len()));
-    all_lists(accel).scan(0, next)
+/// Where in the cells of all lists, and in their entries, those of each begin. What no `u32` holds is refused before it is packed, like
+/// all that no texture holds.
+fn list_bases(accel: &Acceleration) -> Vec<[usize; 2]> {
+    let next = |[cells, entries]: &mut [usize; 2], (_, room): (&Lists, [usize; 2])| {
+        let base = [*cells, *entries];
+        (*cells, *entries) = (*cells + room[0], *entries + room[1]);
+        Some(base)
+    };
+    all_lists(accel).scan([0, 0], next).collect()
 }
 
 /// Where the list of each cell begins in the entries of all lists and where it ends; and these entries.
 pub(crate) fn list_contents(accel: &Acceleration) -> [Contents<'_>; 2] {
-    let cells = all_lists(accel).zip(entry_bases(accel)).map(|(lists, base)| {
+    let cells = all_lists(accel).zip(list_bases(accel)).flat_map(|((lists, [room, _]), [_, base])| {
         let offsets = &lists.offsets;
         let place = move |index: usize| (offsets[index] as usize + base) as u32;
-        Contents::new(lists.cells(), move |index: usize| [place(index), place(index + 1)])
+        let own = Contents::new(lists.cells(), move |index: usize| [place(index), place(index + 1)]);
+        [own, Contents::new(room - lists.cells(), |_| [0_u32; 2])]
     });
-    let entries = all_lists(accel).map(|lists| Contents::packed(&lists.entries[..]));
+    let entries = all_lists(accel).flat_map(|(lists, [_, room])| {
+        [Contents::packed(&lists.entries[..]), Contents::new(room - lists.entries.len(), |_| 0_u32)]
+    });
     [Contents::joined(cells.collect()), Contents::joined(entries.collect())]
 }
 
-/// Where the shader finds the lists, of which the cells begin at these places.
-fn list_values(accel: &Acceleration, cell_bases: &[usize]) -> ListValues {
+/// Where the shader finds the lists, which begin at these places.
+fn list_values(accel: &Acceleration, bases: &[[usize; 2]]) -> ListValues {
     let screen = ListValues {
         screen_shift: accel.screen.shift,
         screen_across: accel.screen.across,
@@ -194,8 +198,8 @@ fn list_values(accel: &Acceleration, cell_bases: &[usize]) -> ListValues {
             grid_low: grid.low,
             grid_per_unit: grid.per_unit,
             grid_cells: grid.cells,
-            grid_first: cell_bases.last().copied().unwrap_or_default() as u32,
-            grid_entries: entry_bases(accel).last().unwrap_or_default() as u32,
+            grid_first: bases.last().map_or(0, |base| base[0] as u32),
+            grid_entries: bases.last().map_or(0, |base| base[1] as u32),
             ..screen
         },
     }

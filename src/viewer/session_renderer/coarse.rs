@@ -3,6 +3,7 @@
 use crate::effects::Effects;
 use crate::engine::{Backend, Engine, Options, Output};
 use crate::gpu;
+use crate::kept::Kept;
 use crate::scene::{Fov, Scene, Window};
 use crate::settings::Settings;
 
@@ -12,7 +13,7 @@ const GREATEST_SIDE: u32 = 8192;
 /// A renderer whose pixels are every `step`-th column and row of the picture of `size`, with the size that it renders.
 pub(super) fn coarse_engine<'g, O: Output>(
     backend: Backend<'g>,
-    scene: &mut Scene,
+    (scene, kept): Shown,
     (settings, effects): (&Settings, &Effects),
     (size, fov): Framing,
     step: u32,
@@ -31,9 +32,12 @@ pub(super) fn coarse_engine<'g, O: Output>(
             scene.window.bottom = end(window.top, window.bottom, height, size.1);
         }
         (scene.width, scene.height) = (width, height);
-        Ok((Engine::with(backend, scene.viewed(settings), effects, options)?, (width, height)))
+        Ok((Engine::with(backend, scene.viewed_by(settings, kept), effects, options)?, (width, height)))
     })
 }
+
+/// A scene, and what its other pictures have left for the next eye, if there are any.
+pub(super) type Shown<'s> = (&'s mut Scene, Option<&'s Kept>);
 
 /// The size of a picture, and the field of view where it takes the place of the scene's window.
 pub(super) type Framing = ((u32, u32), Option<Fov>);

@@ -85,7 +85,7 @@ impl SessionRenderer<'_> {
         let backend = Backend::of(self.gpu, &job.selection);
         let how = (&job.settings, &effects);
         let (mut engine, (width, height)): (Engine, _) =
-            coarse_engine(backend, context.scene, how, job.framing(), step, &Options::default())?;
+            coarse_engine(backend, context.shown(), how, job.framing(), step, &Options::default())?;
         let mut rgb = vec![0; width as usize * height as usize * 3];
         engine.rows(0, &mut rgb)?;
         let times = engine.times();

@@ -69,12 +69,12 @@ impl SessionRenderer<'_> {
         let start = Instant::now();
         let settings = Settings { samples_per_side, ..job.settings };
         let backend = Backend::of(self.gpu, &job.selection);
-        let (scene, how, whole) = (&mut *context.scene, (&settings, &job.effects), job.framing());
+        let (shown, how, whole) = (context.shown(), (&settings, &job.effects), job.framing());
         let (engine, size) = if let Some(map) = job.map.take() {
-            let (engine, size) = coarse_engine(backend, scene, how, whole, step, &self.maps.options())?;
+            let (engine, size) = coarse_engine(backend, shown, how, whole, step, &self.maps.options())?;
             (PassEngine::Sampled(engine, map), size)
         } else {
-            let (engine, size) = coarse_engine(backend, scene, how, whole, step, &Options::default())?;
+            let (engine, size) = coarse_engine(backend, shown, how, whole, step, &Options::default())?;
             (PassEngine::Rows(engine), size)
         };
         let took = start.elapsed() + Duration::from_secs_f64(job.took / 1e3);

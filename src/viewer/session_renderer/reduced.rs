@@ -14,7 +14,7 @@ use crate::settings::Settings;
 use crate::viewer::canvas::Canvas;
 use crate::viewer::cost_model::CostModel;
 
-/// A scene of more spheres is shown by a part of them while the eye moves.
+/// A scene of more spheres is shown by a part of them while the eye moves, unless the device prepares all of them soon enough.
 pub(super) const MANY_SPHERES: usize = 20_000;
 /// How many of them then.
 const REDUCED_SPHERES: usize = 10_000;
@@ -42,7 +42,7 @@ impl<'g> SessionRenderer<'g> {
         let settings = Settings { samples_per_side: 1, ..view.settings() };
         let size = fitted(view.size(context.scene), context.pixels);
         let mut part = largest(context.scene, &settings, REDUCED_SPHERES);
-        let Plan { effects, selection, problem } = Plan::of(&mut part, &settings, &view, self.gpu);
+        let Plan { effects, selection, problem } = Plan::of((&mut part, None), &settings, &view, self.gpu);
         if problem.is_some() {
             // The whole scene says why.
             self.reduced.shown = Some((version, Instant::now()));
@@ -59,8 +59,14 @@ impl<'g> SessionRenderer<'g> {
         }
         let costs = CostModel { prepare_ms: 0.0, sample_ms: self.reduced.sample_ms, measured: true };
         let step = costs.step(size, FRAME_MS).max(2);
-        let (mut engine, (width, height)): (Engine, _) =
-            coarse_engine(backend, &mut part, (&settings, &effects), (size, view.fov), step, &Options::default())?;
+        let (mut engine, (width, height)): (Engine, _) = coarse_engine(
+            backend,
+            (&mut part, None),
+            (&settings, &effects),
+            (size, view.fov),
+            step,
+            &Options::default(),
+        )?;
         let mut rgb = vec![0; width as usize * height as usize * 3];
         engine.rows(0, &mut rgb)?;
         self.reduced.sample_ms = engine.times().render_ms / (f64::from(width) * f64::from(height)).max(4096.0);

@@ -4,7 +4,6 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::pass::{FrameStats, Pass, PassEngine};
-use super::reduced::MANY_SPHERES;
 use super::{Context, FRAME_MS, SessionRenderer};
 use crate::engine::{Backend, Times, ms, put_pixels};
 use crate::gpu;
@@ -59,7 +58,7 @@ impl<'g> SessionRenderer<'g> {
         let times = engine.times();
         let (rays, all) = (times.render_ms + times.read_back_ms, ms(pass.took) - times.compile_ms);
         // A large scene is shown by a part of it while the eye moves: its own pictures say nothing of those.
-        if context.scene.spheres.len() <= MANY_SPHERES {
+        if !self.moves_in_part(context) {
             self.maps.learn(samples.len(), rays, all);
         }
         self.costs.learn(self.costs.prepare_ms, rays, samples.len() as f64);

@@ -7,7 +7,6 @@ use std::time::{Duration, Instant};
 use glam::DVec3;
 
 use super::{Args, Job, frame_name};
-use crate::accel::KeptLists;
 use crate::cli::failure::{Failure, SCENE};
 use crate::cli::input::{Loaded, print_doubts};
 use crate::cli::linear::Coding;
@@ -19,6 +18,7 @@ use crate::engine::{Backend, Engine, Times, device_name, ms};
 use crate::film::Target;
 use crate::gpu::Gpu;
 use crate::import::Lamps;
+use crate::kept::Kept;
 use crate::scene::{Scene, Window};
 use crate::settings::{Quantize, Settings};
 use crate::verify::Verify;
@@ -56,7 +56,7 @@ pub(super) struct Source {
     /// Lights that turn with the eye, where it has such.
     lamps: Option<Lamps>,
     /// What its frames share.
-    kept: KeptLists,
+    kept: Kept,
     /// Reading and parsing; of the first frame that shows it.
     parse_time: Duration,
 }
@@ -67,7 +67,7 @@ impl Source {
         let Loaded { name, scene, lamps, parse_time, .. } = loaded;
         let file_size = [scene.width, scene.height];
         let size = size.map_or(file_size, <[u32; 2]>::from);
-        Self { name, window: scene.window, size, file_size, scene, lamps, kept: KeptLists::default(), parse_time }
+        Self { name, window: scene.window, size, file_size, scene, lamps, kept: Kept::default(), parse_time }
     }
 }
 
