@@ -111,6 +111,9 @@ pub struct Promise {
 
 /// One pixel in so many is what a tier may differ by.
 const MAX_SHARE: f64 = 1e-4;
+/// The share of which a certified picture is begun by `fast` at the most, where `double` is cheap: `fast` is unsure of some five times as
+/// many pixels.
+const MAX_CERTIFIED_SHARE: f64 = 0.1;
 
 impl Tier {
     /// What the tier covers.
@@ -398,11 +401,15 @@ impl Selection {
                 let why = excess(tier).map_or_else(|| "covers the scene".into(), |why| format!("not covered: {why}"));
                 (tier, format!("asked for; {why}"))
             }
-            // However many pixels rounding changes, `fast` knows them.
-            Request::Certified => match demand.beyond_with_share(Tier::Fast, f64::INFINITY, viewed.scene()) {
-                None => (Tier::Fast, "asked for; begun by the cheapest tier".into()),
-                Some(why) => (Tier::Double, format!("asked for; begun by double, not fast: {why}")),
-            },
+            Request::Certified => {
+                // However many pixels rounding changes, `fast` knows them. But where `double` is cheap, and so next to it, it costs less
+                // than what is left to do.
+                let most = if ladder.get(1) == Some(&Tier::Double) { MAX_CERTIFIED_SHARE } else { f64::INFINITY };
+                match demand.beyond_with_share(Tier::Fast, most, viewed.scene()) {
+                    None => (Tier::Fast, "asked for; begun by the cheapest tier".into()),
+                    Some(why) => (Tier::Double, format!("asked for; begun by double, not fast: {why}")),
+                }
+            }
             // Where only `double` is left, a certified picture may be cheaper: as soon as that is measured, it is chosen here.
             Request::Auto => {
                 // Each tier that is passed over says why.

@@ -76,7 +76,7 @@ pub(super) fn certified(gpu: &Gpu, tier: Tier, count: usize, seed: u64) -> Resul
         let settings = [Settings::classic(), Settings::exact()][number % 2];
         let viewed = scene.viewed(&settings);
         let effects = Effects::of(&viewed);
-        if Selection::of(&viewed, &effects, Request::Certified, gpu.ladder()).tier > tier {
+        if Selection::of(&viewed, &effects, Request::Certified, &Tier::ALL).tier > tier {
             continue;
         }
         let (expected, _) = render_picture(&mut Engine::new(Backend::Reference, scene.viewed(&settings), &effects)?)?;
