@@ -2,10 +2,8 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
 
 use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, read};
-use tempfile::TempDir;
 use trueray::aov::{Aov, DeviceLayers, Layer, MAX_BOUNCES, TooMany, layers};
 use trueray::cpu::{PixelRecord, picked};
 use trueray::effects::Effects;
@@ -16,7 +14,7 @@ use trueray::settings::Settings;
 use trueray::{DVec3, Tier, View};
 
 use crate::pixel::{inspector, places, same, scenes};
-use crate::support::{gpu, pairs, root, scaled, scene, scene_of};
+use crate::support::{Folder, assert_exit, gpu, pairs, root, scaled, scene, scene_of};
 
 /// The terms of a pixel with one sample, added in the documented order: ambient; of each light diffuse, specular; background; each
 /// bounce.
@@ -130,34 +128,6 @@ fn too_many_bounces_are_refused() {
     assert_eq!(layers_of(&scene, &settings, &[Aov::Bounce]).unwrap().len(), MAX_BOUNCES);
 }
 
-/// A folder with `scene.txt` in it, where the program runs.
-struct Folder(TempDir);
-
-impl Folder {
-    fn new(scene: &str) -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        fs::write(folder.path().join("scene.txt"), scene).unwrap();
-        Self(folder)
-    }
-
-    fn run(&self, arguments: &str) -> Output {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_trueray"));
-        command.args(arguments.split_whitespace()).current_dir(self.0.path()).stdin(Stdio::null());
-        command.output().unwrap()
-    }
-
-    fn path(&self, name: &str) -> std::path::PathBuf {
-        self.0.path().join(name)
-    }
-}
-
-#[track_caller]
-fn assert_exit(output: &Output, code: i32, message: &str) {
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(code), "{stderr}");
-    assert!(stderr.contains(message), "expected '{message}' in:\n{stderr}");
-}
-
 const SCENE: &str = "NEAR 1\nLEFT -1\nRIGHT 1\nBOTTOM -1\nTOP 1\nRES 5 4\nSPHERE s 0 0.5 -2 1 1 1 1 0.5 0 0.5 0.5 0.5 0.5 4\n\
                      LIGHT a 2 2 0 1 1 1\nLIGHT b -2 2 0 0.5 0.5 0.5\nAMBIENT 1 1 1\nBACK 0 0 1\n";
 
@@ -178,7 +148,7 @@ fn read_pfm(path: &Path) -> (String, [usize; 2], Vec<f32>) {
 #[test]
 fn files_are_written_beside_the_picture() {
     use Aov::{Bounce, Color, Diffuse, Normal, T};
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     let list = "t,normal,diffuse,bounce,color";
     let output = place.run(&format!("render --device cpu scene.txt -o out.ppm --aov {list} --aov-format png,pfm,exr"));
     assert_exit(&output, 0, "13 files of values from the CPU reference: out.color.png");
@@ -225,7 +195,7 @@ fn files_are_written_beside_the_picture() {
 
 #[test]
 fn one_file_can_have_any_name_and_the_rest_is_refused() {
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     assert_exit(
         &place.run("render --device cpu scene.txt -o - --aov all --aov-file values.exr"),
         0,
@@ -250,7 +220,7 @@ fn one_file_can_have_any_name_and_the_rest_is_refused() {
 
 #[test]
 fn beside_a_picture_that_the_scene_names_only_pictures_are_replaced() {
-    let place = Folder::new(&format!("{SCENE}OUTPUT out.ppm\n"));
+    let place = Folder::with_scene(&format!("{SCENE}OUTPUT out.ppm\n"));
     for (name, arguments) in
         [("out.t.png", "--aov t"), ("out.t.pfm", "--aov t"), ("out.aov.exr", "--aov t --aov-format exr")]
     {
@@ -276,7 +246,7 @@ fn errors_are_those_of_the_devices_picture() {
     let Some(_gpu) = gpu("aov::errors_are_those_of_the_devices_picture") else { return };
     // Fast rounds light that hardly changes over some levels.
     let scene = SCENE.replace("RES 5 4", "RES 60 40");
-    let place = Folder::new(&scene);
+    let place = Folder::with_scene(&scene);
     let output = place
         .run("render --device gpu --precision fast --verify 0 scene.txt -o out.png --aov error --aov-format pfm,png");
     assert_exit(&output, 0, "2 files of values from the CPU reference");
@@ -390,7 +360,7 @@ fn files_say_where_their_values_are_from() {
     if gpu("aov::files_say_where_their_values_are_from").is_none() {
         return;
     }
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     let told = "render --device gpu --precision fast scene.txt -o out.png --aov-from device";
     let output = place.run(&format!("{told} --aov t,margin,normal --aov-format png,exr"));
     assert_exit(&output, 0, "4 files of values from ");

@@ -1,5 +1,7 @@
 //! What several test modules share.
 
+mod folder;
+
 use std::collections::BTreeMap;
 use std::io::Write as _;
 use std::num::NonZero;
@@ -15,6 +17,8 @@ use trueray::gpu::{Choice, Gpu};
 use trueray::precision::Tier;
 use trueray::scene::{Scene, Window, parse};
 use trueray::settings::Settings;
+
+pub(crate) use folder::{Folder, assert_exit};
 
 /// Compiling is what tests with a device take most of their time for: they share as many kernels as there are.
 pub(crate) const KEPT: NonZero<usize> = NonZero::new(400).unwrap();
