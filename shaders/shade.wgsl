@@ -70,15 +70,28 @@ fn incidence_of(index: u32, surface: Surface, material: Material, is_seen: bool)
     return Incidence(light, ray, to_light, n_dot_l);
 }
 
+fn ambient_light(material: Material) -> vec3r {
+    return params.ambient * material.color * material.ka;
+}
+
+// Of a light that reaches the surface, which faces it.
+fn diffuse_light(at: Incidence, material: Material) -> vec3r {
+    return at.light.intensity * material.color * (material.kd * at.n_dot_l);
+}
+
+fn specular_light(at: Incidence, surface: Surface, material: Material) -> vec3r {
+    return at.light.intensity * specular_term(surface, material, at.to_light, at.n_dot_l);
+}
+
 // A colour and, where it reaches the surface, the light with this index, which the surface faces.
 fn with_light(color: vec3r, index: u32, surface: Surface, material: Material) -> vec3r {
     let at = incidence_of(index, surface, material, true);
     var lit = color;
     if DIFFUSE {
-        lit += at.light.intensity * material.color * (material.kd * at.n_dot_l);
+        lit += diffuse_light(at, material);
     }
     if SPECULAR {
-        lit += at.light.intensity * specular_term(surface, material, at.to_light, at.n_dot_l);
+        lit += specular_light(at, surface, material);
     }
     // After what does not depend on it, unlike src/cpu/shade.rs: processors calculate both at once.
     var is_lit = true;
@@ -119,7 +132,7 @@ fn local_color(surface: Surface, material: Material, is_seen: bool) -> vec3r {
     note_ambient(material, is_seen);
     var color = vec3r();
     if AMBIENT {
-        color = params.ambient * material.color * material.ka;
+        color = ambient_light(material);
     }
     if DIFFUSE || SPECULAR {
         var first = 0u;

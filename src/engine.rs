@@ -157,7 +157,9 @@ pub struct DeviceEngine<'a, O> {
     certifier: Option<Certifier<'a>>,
     /// What the reference has taken to decide them.
     decided: Duration,
-    /// Pixels of which the device has cut loops short.
+    /// Pixels that it has calculated.
+    by_reference: u64,
+    /// Those among them of which the device has cut loops short.
     cut: u64,
 }
 
@@ -190,6 +192,7 @@ impl<O: Output> DeviceEngine<'_, O> {
             (None, None) => return Err(self.renderer.too_few_turns(cut.len())),
         };
         unsure.extend(cut);
+        self.by_reference += unsure.len() as u64;
         let (shown, tally) = reference.all_of_pixels(&unsure)?;
         if let Some(certifier) = &mut self.certifier {
             certifier.stages.reference += unsure.len() as u64;
@@ -321,8 +324,9 @@ impl<'a, O: Output> Engine<'a, O> {
         let certifier = certified.then(|| Certifier::new(gpu, tier, viewed.settings()));
         let keeps = certified || renderer.tells_tangents() && verifier.is_none();
         let kept = keeps.then(|| KeptScene::new(viewed, effects, lists));
-        let (prepare, decided) = (start.elapsed(), Duration::ZERO);
-        Ok(Self::Gpu(Box::new(DeviceEngine { renderer, prepare, verifier, kept, certifier, decided, cut: 0 })))
+        let (prepare, decided, by_reference, cut) = (start.elapsed(), Duration::ZERO, 0, 0);
+        let engine = DeviceEngine { renderer, prepare, verifier, kept, certifier, decided, by_reference, cut };
+        Ok(Self::Gpu(Box::new(engine)))
     }
 
     /// The same where `double` renders the unsure pixels of a certified picture as soon as a band has so many: this changes no byte.
@@ -384,6 +388,14 @@ impl<'a, O: Output> Engine<'a, O> {
                     dispatches: times.dispatches,
                 }
             }
+        }
+    }
+
+    /// How many pixels so far the reference has calculated in place of the device, which is unsure of them or has too few turns.
+    pub fn by_reference(&self) -> u64 {
+        match self {
+            Self::Cpu(cpu) => cpu.pixels,
+            Self::Gpu(gpu) => gpu.by_reference,
         }
     }
 

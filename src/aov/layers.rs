@@ -69,9 +69,20 @@ impl fmt::Display for TooMany {
 
 /// A layer, or all bounces, before there are values.
 #[derive(Debug, Clone, Copy)]
-struct Plane {
-    aov: Aov,
-    light: Option<usize>,
+pub(super) struct Plane {
+    pub(super) aov: Aov,
+    /// The index of its light, where there is a layer for each.
+    pub(super) light: Option<usize>,
+}
+
+/// The planes of these kinds, in the order of [`Aov`].
+pub(super) fn planes(wanted: &[Aov], lights: usize) -> Vec<Plane> {
+    let mut sorted = wanted.to_vec();
+    sorted.sort_unstable();
+    sorted.dedup();
+    let of_lights =
+        |aov: Aov| -> Vec<Option<usize>> { if aov.per_light() { (0..lights).map(Some).collect() } else { vec![None] } };
+    sorted.iter().flat_map(|&aov| of_lights(aov).into_iter().map(move |light| Plane { aov, light })).collect()
 }
 
 /// One row of pixels.
@@ -101,14 +112,11 @@ pub fn layers(
     if u64::from(width) * u64::from(height) > MAX_PIXELS {
         return Err(TooMany::Pixels);
     }
-    let mut sorted = wanted.to_vec();
-    sorted.sort_unstable();
-    sorted.dedup();
-    let of_lights =
-        |aov: Aov| -> Vec<Option<usize>> { if aov.per_light() { (0..lights).map(Some).collect() } else { vec![None] } };
-    let planes: Vec<Plane> =
-        sorted.iter().flat_map(|&aov| of_lights(aov).into_iter().map(move |light| Plane { aov, light })).collect();
-    let margins = sorted.iter().any(|aov| matches!(aov, Aov::Margin));
+    if wanted.is_empty() {
+        return Ok(Vec::new());
+    }
+    let planes = planes(wanted, lights);
+    let margins = wanted.contains(&Aov::Margin);
     let row = |y: u32| {
         let mut row = Row { planes: vec![Vec::new(); planes.len()], bounces: Vec::new() };
         for x in 0..width {
@@ -128,20 +136,19 @@ pub fn layers(
     if most > MAX_BOUNCES {
         return Err(TooMany::Bounces(most));
     }
-    let layer = |aov, name, values| Layer { aov, name, width, height, values };
     let mut layers = Vec::new();
     for (index, plane) in planes.iter().enumerate() {
         if plane.aov == Aov::Bounce {
             layers.extend((0..most).map(|bounce| {
                 let of = |rays: &Vec<[f64; 3]>| rays.get(bounce).copied().unwrap_or_default().map(|x| x as f32);
                 let values = rows.iter().flat_map(|row| &row.bounces).flat_map(of).collect();
-                layer(plane.aov, format!("{}-{}", plane.aov, bounce + 1), values)
+                let name = format!("{}-{}", plane.aov, bounce + 1);
+                Layer { name, values, ..plane.layer((width, height)) }
             }));
             continue;
         }
-        let name = plane.light.map_or_else(|| plane.aov.name(), |light| format!("{}-{light}", plane.aov));
         let values = rows.iter().flat_map(|row| &row.planes[index]).copied().collect();
-        layers.push(layer(plane.aov, name, values));
+        layers.push(Layer { values, ..plane.layer((width, height)) });
     }
     Ok(layers)
 }
@@ -151,8 +158,14 @@ fn pixel_of(rgb: &[u8], index: usize) -> [u8; 3] {
 }
 
 impl Plane {
+    /// The layer before there are values.
+    pub(super) fn layer(self, (width, height): (u32, u32)) -> Layer {
+        let name = self.light.map_or_else(|| self.aov.name(), |light| format!("{}-{light}", self.aov));
+        Layer { aov: self.aov, name, width, height, values: Vec::new() }
+    }
+
     /// Appends a pixel's values; `shown` is what the device shows.
-    fn push(self, record: &PixelRecord, quantize: Quantize, shown: Option<[u8; 3]>, values: &mut Vec<f32>) {
+    pub(super) fn push(self, record: &PixelRecord, quantize: Quantize, shown: Option<[u8; 3]>, values: &mut Vec<f32>) {
         let first = record.samples.first().and_then(|sample| sample.rays.first());
         let hit = first.and_then(|ray| ray.hit.as_ref());
         let light = self.light.and_then(|light| hit.and_then(|hit| hit.lights.get(light)));

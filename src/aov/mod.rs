@@ -1,7 +1,9 @@
 //! Arbitrary output variables: what the tracer has calculated on the way to each pixel, as layers of numbers.
 //!
-//! All are from the CPU reference, by the witness that also tells of single pixels.
+//! All are from the CPU reference, by the witness that also tells of single pixels; some a device tells, too, by the shaders that
+//! render.
 
+mod device;
 mod layers;
 mod scale;
 
@@ -9,6 +11,7 @@ use std::fmt;
 
 use clap::ValueEnum;
 
+pub use device::DeviceLayers;
 pub use layers::{Layer, MAX_BOUNCES, MAX_PIXELS, TooMany, layers};
 
 /// What a layer shows.
@@ -61,6 +64,30 @@ impl Aov {
     /// What its layer has one for each of, beside the pixels.
     fn per_light(self) -> bool {
         matches!(self, Self::NDotL | Self::Shadow | Self::Diffuse | Self::Specular)
+    }
+
+    /// Whether a pixel with several samples has their mean, and not the first one's.
+    fn is_mean(self) -> bool {
+        matches!(self, Self::Color | Self::Background | Self::Ambient | Self::Diffuse | Self::Specular)
+    }
+
+    /// Whether the shaders calculate it on the way to a colour, and can say so.
+    fn is_of_kernels(self) -> bool {
+        match self {
+            Self::Bounce | Self::Rays | Self::Tests | Self::Margin | Self::Step | Self::Error => false,
+            Self::Color
+            | Self::T
+            | Self::Sphere
+            | Self::Inside
+            | Self::Position
+            | Self::Normal
+            | Self::NDotL
+            | Self::Shadow
+            | Self::Background
+            | Self::Ambient
+            | Self::Diffuse
+            | Self::Specular => true,
+        }
     }
 
     /// How its numbers are called in files of named channels, after the layer's name.

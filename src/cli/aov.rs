@@ -9,10 +9,11 @@ use super::files::check_place;
 use super::guard::Guard;
 use super::named::check_replaced;
 use super::output::errln;
-use crate::aov::{Aov, Layer, TooMany, layers};
+use crate::aov::{Aov, DeviceLayers, Layer, TooMany, layers};
 use crate::cpu::Inspector;
 use crate::effects::Effects;
-use crate::film::{Format, Picture, Target, encode_exr, encode_pfm, save_bytes};
+use crate::engine::Backend;
+use crate::film::{Format, Picture, PictureWriter, Target, encode_exr, encode_pfm, save_bytes};
 use crate::settings::Quantize;
 use crate::viewed::ViewedScene;
 use crate::words::{count, visible, visible_path};
@@ -21,9 +22,12 @@ use crate::words::{count, visible, visible_path};
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Output")]
 pub(super) struct AovOptions {
-    /// Intermediate values to write beside the picture, from the CPU reference: a list of the names below, or `all`
+    /// Intermediate values to write beside the picture: a list of the names below, or `all`
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_enum)]
     aov: Vec<Wanted>,
+    /// Where intermediate values are from: all from the CPU reference, or those that its kernels tell from the device that renders
+    #[arg(long, value_name = "SOURCE", value_enum, default_value = "reference", requires = "aov")]
+    aov_from: Source,
     /// Files of intermediate values: `png` for the eye, `pfm` with the numbers, `exr` with all numbers in one file
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_enum, default_value = "png,pfm", requires = "aov")]
     aov_format: Vec<AovFormat>,
@@ -73,6 +77,15 @@ impl ValueEnum for Wanted {
     }
 }
 
+/// Where values are from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Source {
+    /// The CPU reference
+    Reference,
+    /// The device that renders, what it does not tell from the CPU reference
+    Device,
+}
+
 /// How layers are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum AovFormat {
@@ -112,12 +125,13 @@ impl AovOptions {
     }
 
     /// What collects the values of a scene; `None` where none are wanted.
-    pub(super) fn of(
+    pub(super) fn of<'a>(
         &self,
         viewed: &ViewedScene,
         effects: &Effects,
-        has_device: bool,
-    ) -> Result<Option<Collector>, Failure> {
+        backend: Backend<'a>,
+    ) -> Result<Option<Collector<'a>>, Failure> {
+        let has_device = backend.gpu().is_some();
         let names_error = self.aov.iter().any(|wanted| matches!(wanted, Wanted::One(Aov::Error)));
         if names_error && !has_device {
             let message = "--aov error is of a device's picture, and the CPU reference renders this one";
@@ -133,17 +147,34 @@ impl AovOptions {
         });
         let wanted: Vec<Aov> = wanted.collect();
         let picture = wanted.contains(&Aov::Error).then(Vec::new);
+        let device = match (self.aov_from, backend) {
+            (Source::Reference, _) => None,
+            (Source::Device, Backend::Device(gpu, tier)) => Some(DeviceLayers::new(gpu, tier, viewed, effects)?),
+            (Source::Device, Backend::Certified(..)) => {
+                let message =
+                    "--aov-from device does not go with --precision certified, whose pixels are the CPU reference's";
+                return Err(Failure::new(USAGE, message));
+            }
+            (Source::Device, Backend::Reference) => {
+                let message =
+                    "--aov-from device asks the device that renders, and the CPU reference renders this picture";
+                return Err(Failure::new(USAGE, message));
+            }
+        };
         let (inspector, lights) = (Inspector::new(viewed, effects), viewed.scene().lights.len());
         let quantize = viewed.settings().quantize;
         let formats = if self.aov_file.is_some() { vec![AovFormat::Exr] } else { self.aov_format.clone() };
-        Ok(Some(Collector { inspector, lights, quantize, wanted, formats, file: self.aov_file.clone(), picture }))
+        let file = self.aov_file.clone();
+        Ok(Some(Collector { inspector, device, lights, quantize, wanted, formats, file, picture }))
     }
 }
 
 /// A scene whose intermediate values are wanted.
 #[derive(Debug)]
-pub(super) struct Collector {
+pub(super) struct Collector<'a> {
     inspector: Inspector,
+    /// What is asked first, where that is not the reference.
+    device: Option<DeviceLayers<'a>>,
     lights: usize,
     quantize: Quantize,
     wanted: Vec<Aov>,
@@ -153,7 +184,7 @@ pub(super) struct Collector {
     picture: Option<Vec<u8>>,
 }
 
-impl Collector {
+impl Collector<'_> {
     /// Takes the next rows of the picture.
     pub(super) fn add(&mut self, rgb: &[u8]) {
         if let Some(picture) = &mut self.picture {
@@ -164,14 +195,13 @@ impl Collector {
     /// Calculates the values and writes their files, beside the picture of this name; where the scene has named it, over nothing but
     /// pictures. Says which unless `quiet`.
     pub(super) fn write(
-        self,
+        mut self,
         name: &str,
         (picture, is_named): (&Path, bool),
         guard: &mut Guard,
         quiet: bool,
     ) -> Result<(), Failure> {
-        let shown = self.picture.as_deref();
-        let layers = layers(&self.inspector, self.lights, self.quantize, &self.wanted, shown)?;
+        let layers = self.layers()?;
         let mut files: Vec<(PathBuf, Contents)> = Vec::new();
         for format in &self.formats {
             match format {
@@ -201,15 +231,45 @@ impl Collector {
         }
         let expected = self.expected()?;
         for (path, contents) in &files {
-            contents.save(path, self.quantize, expected.as_ref())?;
+            contents.save(path, self.quantize, expected.as_ref(), |layers| self.note(layers))?;
             guard.written(path);
         }
         if !quiet {
             let names: Vec<String> = files.iter().map(|(path, _)| visible_path(path)).collect();
-            let count = count(files.len() as u64, "file");
-            errln!("trueray: {}: {count} of values from the CPU reference: {}", visible(name), names.join(", "));
+            let (count, sources) = (count(files.len() as u64, "file"), self.sources(&layers));
+            errln!("trueray: {}: {count} of values from {sources}: {}", visible(name), names.join(", "));
         }
         Ok(())
+    }
+
+    fn layers(&mut self) -> Result<Vec<Layer>, Failure> {
+        let Self { inspector, device, wanted, .. } = self;
+        let is_told = |aov| device.as_ref().is_some_and(|device| device.tells(aov));
+        let of_reference: Vec<Aov> = wanted.iter().copied().filter(|&aov| !is_told(aov)).collect();
+        let shown = self.picture.as_deref();
+        let mut layers = layers(inspector, self.lights, self.quantize, &of_reference, shown)?;
+        if let Some(device) = device {
+            layers.extend(device.layers(inspector, wanted)?);
+            layers.sort_by_key(|layer| layer.aov);
+        }
+        Ok(layers)
+    }
+
+    /// Where these are from.
+    fn sources(&self, layers: &[Layer]) -> String {
+        let Some(device) = &self.device else { return REFERENCE.to_owned() };
+        let (told, others): (Vec<_>, Vec<_>) = layers.iter().partition(|layer| device.tells(layer.aov));
+        let named = |layers: Vec<&Layer>, source: &str| {
+            let names: Vec<_> = layers.iter().map(|layer| layer.name.as_str()).collect();
+            (!names.is_empty()).then(|| format!("{source} ({})", names.join(", ")))
+        };
+        let sources = [named(told, device.name()), named(others, REFERENCE)];
+        sources.into_iter().flatten().collect::<Vec<_>>().join(" and ")
+    }
+
+    /// What a file says of where its layers are from; nothing where all are the reference's.
+    fn note(&self, layers: &[Layer]) -> Option<String> {
+        self.device.as_ref().map(|_| format!("values from {}", self.sources(layers)))
     }
 
     /// The reference's picture, where the device's is compared with it.
@@ -224,6 +284,8 @@ impl Collector {
     }
 }
 
+const REFERENCE: &str = "the CPU reference";
+
 /// `scene.normal.png` beside `scene.png`.
 fn beside(picture: &Path, layer: &Layer, ending: &str) -> PathBuf {
     picture.with_extension(format!("{}.{ending}", layer.name))
@@ -237,10 +299,23 @@ enum Contents<'a> {
 }
 
 impl Contents<'_> {
-    fn save(&self, path: &Path, quantize: Quantize, expected: Option<&Picture>) -> Result<(), Failure> {
+    fn save(
+        &self,
+        path: &Path,
+        quantize: Quantize,
+        expected: Option<&Picture>,
+        note: impl Fn(&[Layer]) -> Option<String>,
+    ) -> Result<(), Failure> {
         let target = Target::File(path.to_owned());
         match self {
-            Self::Picture(layer) => layer.picture(quantize, expected).save(&target, Format::Png)?,
+            Self::Picture(layer) => {
+                let note = note(std::slice::from_ref(layer));
+                let source = note.as_deref().map(|note| ("Source", note));
+                let size = (layer.width, layer.height);
+                let mut writer = PictureWriter::with_text(&target, Format::Png, size, source)?;
+                writer.write_rows(layer.picture(quantize, expected).rgb())?;
+                writer.finish()?;
+            }
             Self::Numbers(layer) => {
                 let Layer { width, height, values, .. } = layer;
                 save_bytes(&target, &encode_pfm(*width, *height, layer.channels(), values))?;
@@ -248,7 +323,7 @@ impl Contents<'_> {
             Self::All(layers) => {
                 let Some(Layer { width, height, .. }) = layers.first() else { return Ok(()) };
                 let channels = layers.iter().flat_map(channels).collect();
-                let file = encode_exr(*width, *height, channels)
+                let file = encode_exr(*width, *height, channels, note(layers).as_deref())
                     .map_err(|why| Failure::new(OUTPUT, format!("cannot write {}: {why}", path.display())))?;
                 save_bytes(&target, &file)?;
             }

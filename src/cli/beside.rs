@@ -5,28 +5,29 @@ use super::failure::Failure;
 use super::guard::Guard;
 use super::show::show;
 use crate::effects::Effects;
+use crate::engine::Backend;
 use crate::film::{Picture, Target};
 use crate::viewed::ViewedScene;
 
 /// What is wanted of one picture, whose rows come one after another.
 #[derive(Debug)]
-pub(super) struct Beside {
+pub(super) struct Beside<'a> {
     size: (u32, u32),
-    aov: Option<Collector>,
+    aov: Option<Collector<'a>>,
     /// The rows so far, where the picture is to be shown.
     shown: Option<Vec<u8>>,
 }
 
-impl Beside {
+impl<'a> Beside<'a> {
     pub(super) fn new(
         aov: &AovOptions,
         shows: bool,
         viewed: &ViewedScene,
         effects: &Effects,
-        has_device: bool,
+        backend: Backend<'a>,
     ) -> Result<Self, Failure> {
         let size = (viewed.scene().width, viewed.scene().height);
-        Ok(Self { size, aov: aov.of(viewed, effects, has_device)?, shown: shows.then(Vec::new) })
+        Ok(Self { size, aov: aov.of(viewed, effects, backend)?, shown: shows.then(Vec::new) })
     }
 
     /// Takes the next rows, 3 bytes a pixel.

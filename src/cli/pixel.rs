@@ -11,10 +11,13 @@ use super::input::Input;
 use super::options::PictureOptions;
 use super::output::{out, outln};
 use super::particles::Reading;
+use crate::area::Area;
+use crate::brightness::Scalar;
 use crate::cpu::{Decision, Finding, Inspector, MOST_RAYS, PixelRecord, Reference};
 use crate::effects::Effects;
-use crate::engine::{Backend, Engine, Options, Pixels, device_name};
+use crate::engine::{Backend, Engine, Options, device_name};
 use crate::gpu::{Choice, Error, Gpu};
+use crate::linear::Linear;
 use crate::misuse::check_picture;
 use crate::precision::Tier;
 use crate::report::{Labels, numbers, pixel_table};
@@ -80,6 +83,14 @@ struct Single {
 #[derive(Debug, Serialize)]
 struct TierPixel {
     tier: Tier,
+    /// Unclamped, before it becomes levels.
+    color: [f64; 3],
+    /// How far that is from the reference's colour, in units in the last place of `f32`;
+    ulps: [f64; 3],
+    /// and of `f64`, where the tier calculates in it.
+    ulps_f64: Option<[f64; 3]>,
+    /// Whether the reference has calculated it, since rounding on the device could decide what it shows.
+    by_reference: bool,
     levels: [u8; 3],
     /// Its levels less the reference's.
     difference: [i16; 3],
@@ -126,7 +137,10 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         Some(gpu) => gpu
             .ladder()
             .iter()
-            .map(|&tier| tier_pixel((gpu, tier), scene.viewed(&settings), &effects, inspector.reference(), (x, y)))
+            .map(|&tier| {
+                let reference = (inspector.reference(), &record);
+                tier_pixel((gpu, tier), scene.viewed(&settings), &effects, reference, (x, y))
+            })
             .collect::<Result<Vec<_>, _>>()?,
         None => Vec::new(),
     };
@@ -171,16 +185,17 @@ fn tier_pixel(
     (gpu, tier): (&Gpu, Tier),
     viewed: ViewedScene,
     effects: &Effects,
-    reference: &Reference<f64>,
+    (reference, record): (&Reference<f64>, &PixelRecord),
     (x, y): (u32, u32),
 ) -> Result<TierPixel, Error> {
     let backend = Backend::Device(gpu, tier);
-    let mut engine: Engine<Pixels> = Engine::with(backend, viewed, effects, &Options::default())?;
-    let (mut device, mut expected) = ([[0; 3]], [[0; 3]]);
-    engine.pixels(&[[x, y]], &mut device)?;
-    reference.pixels(&[[x, y]], &mut expected)?;
-    let ([levels], [expected]) = (device, expected);
-    let (verdict, decision) = if levels == expected {
+    let alone = viewed.of_part(Area { left: x, top: y, width: 1, height: 1 });
+    let options = Options { linear: true, ..Options::default() };
+    let mut engine = Engine::with(backend, alone, effects, &options)?;
+    let (mut levels, mut linear) = ([0; 3], [Linear::default()]);
+    engine.linear_rows(0, &mut levels, &mut linear)?;
+    let by_reference = engine.by_reference() > 0;
+    let (verdict, decision) = if levels == record.levels {
         (Verdict::Same, None)
     } else {
         match backend.judge().trial(reference).explain(x, y, levels) {
@@ -189,18 +204,41 @@ fn tier_pixel(
             Finding::Undecided => (Verdict::Undecided, None),
         }
     };
-    let difference = std::array::from_fn(|c| i16::from(levels[c]) - i16::from(expected[c]));
-    Ok(TierPixel { tier, levels, difference, verdict, decision })
+    let difference = std::array::from_fn(|c| i16::from(levels[c]) - i16::from(record.levels[c]));
+    let color = linear[0].color.to_array();
+    let off = |scalar| ulps(color, record.color, scalar);
+    let ulps_f64 = gpu.kernel(tier)?.is_double().then(|| off(Scalar::Double));
+    Ok(TierPixel {
+        tier,
+        color,
+        ulps: off(Scalar::Single),
+        ulps_f64,
+        by_reference,
+        levels,
+        difference,
+        verdict,
+        decision,
+    })
 }
 
 fn single(viewed: &ViewedScene, effects: &Effects, record: &PixelRecord, (x, y): (u32, u32)) -> Single {
     let color = Reference::<f32>::new(viewed, effects).color(x, y).unwrap_or_default().to_array();
-    let ulp = |value: f64| {
-        let value = (value.abs() as f32).max(f32::MIN_POSITIVE);
-        f64::from(value.next_up() - value)
+    Single { color, ulps: ulps(color, record.color, Scalar::Single) }
+}
+
+/// How far a colour is from the one that is expected, in units in the last place of the latter.
+fn ulps(color: [f64; 3], expected: [f64; 3], scalar: Scalar) -> [f64; 3] {
+    let ulp = |value: f64| match scalar {
+        Scalar::Single => {
+            let value = (value.abs() as f32).max(f32::MIN_POSITIVE);
+            f64::from(value.next_up() - value)
+        }
+        Scalar::Double => {
+            let value = value.abs().max(f64::MIN_POSITIVE);
+            value.next_up() - value
+        }
     };
-    let ulps = std::array::from_fn(|c| (color[c] - record.color[c]) / ulp(record.color[c]));
-    Single { color, ulps }
+    std::array::from_fn(|c| (color[c] - expected[c]) / ulp(expected[c]))
 }
 
 /// The spheres and lights that a record mentions.
@@ -226,15 +264,13 @@ fn print(report: &Report, labels: Labels) {
     outln!("pixel             x {x}, y {y} of {width}x{height} of {}, on the CPU reference in f64", visible(scene));
     out!("{}", pixel_table(reference, labels));
     outln!("f32 on the CPU    {}", numbers(&single.color));
-    outln!(
-        "                  off by {} units in the last place of f32",
-        single.ulps.map(|x| format!("{x:.1}")).join(", ")
-    );
+    outln!("                  off by {}", in_last_places(&single.ulps, "f32"));
     match (&report.device, &report.no_device) {
-        (Some(device), _) => outln!("device            {device}, which tells levels only"),
+        (Some(device), _) => outln!("device            {device}"),
         (None, why) => outln!("device            none, the CPU alone: {}", why.as_deref().unwrap_or_default()),
     }
-    for TierPixel { tier, levels, difference, verdict, decision } in &report.tiers {
+    for TierPixel { tier, color, ulps, ulps_f64, by_reference, levels, difference, verdict, decision } in &report.tiers
+    {
         let words = match (verdict, decision) {
             (Verdict::Same, _) => "the same".to_owned(),
             (Verdict::Explained, Some(decision)) => format!("explained: {}", decision.name()),
@@ -245,5 +281,16 @@ fn print(report: &Report, labels: Labels) {
         let [red, green, blue] = levels;
         let [dr, dg, db] = difference;
         outln!("  {tier:<15} {red}, {green}, {blue}; off by {dr}, {dg}, {db} levels: {words}");
+        let (ulps, scalar) = ulps_f64.as_ref().map_or((ulps, "f32"), |ulps| (ulps, "f64"));
+        outln!("    colour        {}; off by {}", numbers(color), in_last_places(ulps, scalar));
+        if *by_reference {
+            outln!("                  by the CPU reference: rounding on the device could decide what it shows");
+        }
     }
+}
+
+fn in_last_places(ulps: &[f64; 3], scalar: &str) -> String {
+    // What is 0 has tiny last places.
+    let each = ulps.map(|x| if x.abs() < 1e6 { format!("{x:.1}") } else { format!("{x:.1e}") });
+    format!("{} units in the last place of {scalar}", each.join(", "))
 }

@@ -280,7 +280,7 @@ fn render_one(
 
     let options = args.options(coding);
     let verify = args.verify.unwrap_or_else(|| Verify::usual(scene));
-    let mut beside = Beside::new(&args.aov, args.show, &viewed, &effects, gpu.is_some())?;
+    let mut beside = Beside::new(&args.aov, args.show, &viewed, &effects, backend)?;
     let mut renderer = match choice {
         None => Renderer::Whole(Engine::verified(backend, viewed, &effects, &options, verify)?),
         Some(choice) => Renderer::InPart(Engine::verified(backend, viewed, &effects, &options, verify)?, choice),

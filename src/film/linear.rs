@@ -106,7 +106,7 @@ impl LinearPicture {
                     ((*name).to_owned(), values)
                 };
                 let named = ["R", "G", "B", "A"][..channels].iter().enumerate().map(channel).collect();
-                encode_exr(width, height, named).map_err(io::Error::other)
+                encode_exr(width, height, named, None).map_err(io::Error::other)
             }
         };
         let file = file.map_err(|source| target.error("write", source))?;

@@ -118,15 +118,25 @@ impl PictureWriter {
     pub fn with_note(
         target: &Target,
         format: Format,
-        (width, height): (u32, u32),
+        size: (u32, u32),
         note: Option<&str>,
+    ) -> Result<Self, OutputError> {
+        Self::with_text(target, format, size, note.map(|note| (NOTE, note)))
+    }
+
+    /// Likewise, with a text of one line under any keyword.
+    pub(crate) fn with_text(
+        target: &Target,
+        format: Format,
+        (width, height): (u32, u32),
+        text: Option<(&str, &str)>,
     ) -> Result<Self, OutputError> {
         let error = |source| target.error("create", source);
         let missing = sample_count(width, height).map_err(|wrong| error(invalid(wrong)))? as u64;
         let (raw, destination) = target.open(format.least_bytes(width, height)).map_err(error)?;
         let failure = Failure::default();
         let output = BufWriter::with_capacity(1 << 16, Watched { raw, failure: Arc::clone(&failure) });
-        let encoder = Encoder::new(format, output, (width, height), note)
+        let encoder = Encoder::new(format, output, (width, height), text)
             .map_err(|wrapped| error(original(&failure, wrapped)))?;
         Ok(Self { encoder, destination, target: target.clone(), failure, missing })
     }
@@ -364,8 +374,13 @@ enum Encoder {
 }
 
 impl Encoder {
-    fn new(format: Format, mut output: Output, (width, height): (u32, u32), note: Option<&str>) -> io::Result<Self> {
-        let comment = note.map(|note| format!("# {NOTE} {note}\n")).unwrap_or_default();
+    fn new(
+        format: Format,
+        mut output: Output,
+        (width, height): (u32, u32),
+        text: Option<(&str, &str)>,
+    ) -> io::Result<Self> {
+        let comment = text.map(|(keyword, text)| format!("# {keyword} {text}\n")).unwrap_or_default();
         match format {
             Format::P6 => {
                 write!(output, "P6\n{comment}{width} {height}\n255\n")?;
@@ -376,7 +391,7 @@ impl Encoder {
                 Ok(Self::P3(Plain::new(output, width)))
             }
             Format::Png => {
-                Ok(Self::Png(Box::new(png_writer(output, (width, height), RGB8, note)?.into_stream_writer()?)))
+                Ok(Self::Png(Box::new(png_writer(output, (width, height), RGB8, text)?.into_stream_writer()?)))
             }
         }
     }
@@ -428,14 +443,14 @@ fn png_writer<W: Write>(
     output: W,
     (width, height): (u32, u32),
     (color, depth): Kind,
-    note: Option<&str>,
+    text: Option<(&str, &str)>,
 ) -> Result<png::Writer<W>, png::EncodingError> {
     let mut encoder = png::Encoder::new(output, width, height);
     encoder.set_color(color);
     encoder.set_depth(depth);
     encoder.set_compression(png::Compression::Fast);
-    if let Some(note) = note {
-        encoder.add_itxt_chunk(NOTE.to_owned(), note.to_owned())?;
+    if let Some((keyword, text)) = text {
+        encoder.add_itxt_chunk(keyword.to_owned(), text.to_owned())?;
     }
     encoder.write_header()
 }

@@ -29,7 +29,7 @@ pub use kernel::pipeline::MAX_TABLES;
 pub use kernel::specialisation::Specialisation;
 pub use kernel::spirv::ParsedModule;
 pub use kernel::variant::{Kernel, Schedule, Secondary, Slots, Storage, Tables, Variant};
-pub use render::{DeviceTimes, GpuRenderer, Options, Output, Pixels, Rendered, Rows};
+pub use render::{DeviceTimes, GpuRenderer, Options, Output, Pixels, Rendered, Rows, Term};
 pub use run::echo::echo_layout;
 pub use run::fill::Reconstructor;
 pub use run::probe::{Answer, Batch, Point, ProbeRay, Prober, Question, RawBatch, Surface};

@@ -6,6 +6,7 @@ mod pixels;
 mod place;
 mod rendered;
 mod rows;
+mod term;
 mod tiles;
 mod work;
 
@@ -27,7 +28,7 @@ use crate::gpu::facade::Gpu;
 use crate::gpu::kernel::picture::Bounce;
 use crate::gpu::kernel::pipeline::Pipeline;
 use crate::gpu::kernel::specialisation::Specialisation;
-use crate::gpu::kernel::variant::{Kernel, Schedule, Slots, Variant};
+use crate::gpu::kernel::variant::{Kernel, Schedule, Secondary, Slots, Variant};
 use crate::gpu::shared::{ONE_PATH, SEVERAL_PATHS, dispatch_tiles};
 use crate::gpu::table::bind::{add_copies, add_lists, add_scene, are_too_large, check_fits, copies_fit};
 use crate::gpu::table::pack::{Packed, list_contents};
@@ -43,6 +44,7 @@ use crate::viewed::ViewedScene;
 pub use output::{Output, Pixels, Rows};
 use place::{Statuses, dispatch_bits};
 pub use rendered::Rendered;
+pub use term::Term;
 use tiles::{TILE_PIXELS, TileWords};
 use work::{PATH_QUEUE_SIZE, RAY_COUNT_SIZE, Work};
 
@@ -64,6 +66,8 @@ pub struct Options {
     pub certified: bool,
     /// Asks for the colours of pixels, too, before they are quantised; with pictures that are not certified.
     pub linear: bool,
+    /// Asks for terms of first hits in place of colours, with effects that follow no ray any further.
+    pub terms: bool,
     /// Counts shadow and reflection rays, which a device does in kernels of its own.
     pub count_rays: bool,
     /// Reads the device's own clock, if it has one.
@@ -142,6 +146,8 @@ pub struct GpuRenderer<'a, O = Rows> {
     covered_tiles: u64,
     background: ([u8; 3], Linear),
     max_depth: u32,
+    /// Which term of first hits stands in place of the colour, and its light, where the renderer is for terms.
+    term: [u32; 2],
     /// Parts that the device's threads take of a dispatch.
     hands: usize,
     work: Option<Work>,
@@ -237,7 +243,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         let specialisation = Specialisation {
             slots: O::SLOTS,
             certified: options.certified,
-            linear: options.linear,
+            linear: options.linear || options.terms,
             count_rays: options.count_rays,
             dispatch_tiles: dispatch_tiles(gpu.device.info.max_uniform),
             ..Specialisation::new(viewed, effects, kernel, tuning, tables)
@@ -267,6 +273,10 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         let packed = Packed::new(viewed, effects, kernel, &accel, indices, tangent_margin, options.certified);
         if specialisation.variant().copies() && !copies_fit(&gpu.device, tables, &packed, &accel) {
             specialisation.schedule = Schedule::AtOnce;
+        }
+        if options.terms {
+            // No ray looks for what is beyond the grid.
+            (specialisation.schedule, specialisation.secondary) = (Schedule::First, Secondary::Grid);
         }
         let list_tables = list_contents(&accel);
         check_fits(&gpu.device, tables, &packed, &list_tables)?;
@@ -313,6 +323,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
             covered_tiles,
             background: (settings.quantize.levels(scene.background), background),
             max_depth: effects.depth,
+            term: [0; 2],
             hands: match gpu.device.info.kind.class() {
                 Class::Software => std::thread::available_parallelism().map_or(1, NonZero::get),
                 Class::Integrated | Class::Discrete => 1,
@@ -357,6 +368,11 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
     /// Whether it has colours of pixels before they are quantised.
     pub fn is_linear(&self) -> bool {
         self.inputs.specialisation.linear
+    }
+
+    /// Whether its colours are terms of first hits.
+    pub fn has_terms(&self) -> bool {
+        self.inputs.specialisation.schedule == Schedule::First
     }
 
     /// Times of the work so far.
@@ -465,6 +481,9 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         self.submitted += 1;
         self.gpu.device.queue.write_buffer(&work.tiles, 0, &self.packed_places(tiles));
         self.gpu.device.queue.write_buffer(&work.path_queue, 0, &[0; PATH_QUEUE_SIZE as usize]);
+        if self.has_terms() {
+            self.gpu.device.queue.write_buffer(&work.asked, 0, bytemuck::bytes_of(&self.term));
+        }
         let mut encoder = self.gpu.device.raw.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {

@@ -44,6 +44,16 @@ pub(super) const STATUS_FLAGS: u8 = 7;
 /// Above a status byte, in the number that a sample's colour is kept with: its primary ray hits something.
 pub(super) const STATUS_HIT: u32 = 256;
 
+/// Which term of what a primary ray hits stands in place of the colour; those of lights are the last.
+pub(super) const TERM_HIT: u32 = 0;
+pub(super) const TERM_POSITION: u32 = 1;
+pub(super) const TERM_NORMAL: u32 = 2;
+pub(super) const TERM_BACKGROUND: u32 = 3;
+pub(super) const TERM_AMBIENT: u32 = 4;
+pub(super) const TERM_INCIDENCE: u32 = 5;
+pub(super) const TERM_DIFFUSE: u32 = 6;
+pub(super) const TERM_SPECULAR: u32 = 7;
+
 /// What an answer to a ray of a batch says, bit by bit.
 pub(super) const PROBE_FOUND: u32 = 1;
 pub(super) const PROBE_INSIDE: u32 = 2;
@@ -76,7 +86,8 @@ pub(super) fn declaration(name: &str, scalar: Scalar) -> Option<String> {
     }
     Some(by_name!(
         whole: TILE TILE_PIXELS SMALL_GROUP ROW_BITS WORKGROUP_WORDS ONE_PATH SEVERAL_PATHS STATUS_NOT_FINITE STATUS_CUT
-            STATUS_UNSURE STATUS_FLAGS STATUS_HIT PROBE_FOUND PROBE_INSIDE PROBE_FINITE PROBE_FACING PROBE_BLOCKED POINT_VALUES MAX_LARGE
+            STATUS_UNSURE STATUS_FLAGS STATUS_HIT TERM_HIT TERM_POSITION TERM_NORMAL TERM_BACKGROUND TERM_AMBIENT TERM_INCIDENCE
+            TERM_DIFFUSE TERM_SPECULAR PROBE_FOUND PROBE_INSIDE PROBE_FINITE PROBE_FACING PROBE_BLOCKED POINT_VALUES MAX_LARGE
             NO_SAMPLE UNIT_WEIGHT;
         real: REACH WALK_SLACK ANGLE AXES LENGTH LOCAL LOST NEAR NOTHING POWER ROOT ROOT_AT_EDGE SQUARE TERM
     ))

@@ -2,19 +2,19 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
 
 use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, read};
-use tempfile::TempDir;
-use trueray::aov::{Aov, Layer, MAX_BOUNCES, TooMany, layers};
+use trueray::aov::{Aov, DeviceLayers, Layer, MAX_BOUNCES, TooMany, layers};
 use trueray::cpu::{PixelRecord, picked};
 use trueray::effects::Effects;
 use trueray::film::Picture;
+use trueray::gpu::Gpu;
 use trueray::scene::Scene;
 use trueray::settings::Settings;
+use trueray::{DVec3, Tier, View};
 
 use crate::pixel::{inspector, places, same, scenes};
-use crate::support::{gpu, root, scene, scene_of};
+use crate::support::{Folder, assert_exit, gpu, pairs, root, scaled, scene, scene_of};
 
 /// The terms of a pixel with one sample, added in the documented order: ambient; of each light diffuse, specular; background; each
 /// bounce.
@@ -128,34 +128,6 @@ fn too_many_bounces_are_refused() {
     assert_eq!(layers_of(&scene, &settings, &[Aov::Bounce]).unwrap().len(), MAX_BOUNCES);
 }
 
-/// A folder with `scene.txt` in it, where the program runs.
-struct Folder(TempDir);
-
-impl Folder {
-    fn new(scene: &str) -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        fs::write(folder.path().join("scene.txt"), scene).unwrap();
-        Self(folder)
-    }
-
-    fn run(&self, arguments: &str) -> Output {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_trueray"));
-        command.args(arguments.split_whitespace()).current_dir(self.0.path()).stdin(Stdio::null());
-        command.output().unwrap()
-    }
-
-    fn path(&self, name: &str) -> std::path::PathBuf {
-        self.0.path().join(name)
-    }
-}
-
-#[track_caller]
-fn assert_exit(output: &Output, code: i32, message: &str) {
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(code), "{stderr}");
-    assert!(stderr.contains(message), "expected '{message}' in:\n{stderr}");
-}
-
 const SCENE: &str = "NEAR 1\nLEFT -1\nRIGHT 1\nBOTTOM -1\nTOP 1\nRES 5 4\nSPHERE s 0 0.5 -2 1 1 1 1 0.5 0 0.5 0.5 0.5 0.5 4\n\
                      LIGHT a 2 2 0 1 1 1\nLIGHT b -2 2 0 0.5 0.5 0.5\nAMBIENT 1 1 1\nBACK 0 0 1\n";
 
@@ -176,7 +148,7 @@ fn read_pfm(path: &Path) -> (String, [usize; 2], Vec<f32>) {
 #[test]
 fn files_are_written_beside_the_picture() {
     use Aov::{Bounce, Color, Diffuse, Normal, T};
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     let list = "t,normal,diffuse,bounce,color";
     let output = place.run(&format!("render --device cpu scene.txt -o out.ppm --aov {list} --aov-format png,pfm,exr"));
     assert_exit(&output, 0, "13 files of values from the CPU reference: out.color.png");
@@ -223,7 +195,7 @@ fn files_are_written_beside_the_picture() {
 
 #[test]
 fn one_file_can_have_any_name_and_the_rest_is_refused() {
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     assert_exit(
         &place.run("render --device cpu scene.txt -o - --aov all --aov-file values.exr"),
         0,
@@ -248,7 +220,7 @@ fn one_file_can_have_any_name_and_the_rest_is_refused() {
 
 #[test]
 fn beside_a_picture_that_the_scene_names_only_pictures_are_replaced() {
-    let place = Folder::new(&format!("{SCENE}OUTPUT out.ppm\n"));
+    let place = Folder::with_scene(&format!("{SCENE}OUTPUT out.ppm\n"));
     for (name, arguments) in
         [("out.t.png", "--aov t"), ("out.t.pfm", "--aov t"), ("out.aov.exr", "--aov t --aov-format exr")]
     {
@@ -274,7 +246,7 @@ fn errors_are_those_of_the_devices_picture() {
     let Some(_gpu) = gpu("aov::errors_are_those_of_the_devices_picture") else { return };
     // Fast rounds light that hardly changes over some levels.
     let scene = SCENE.replace("RES 5 4", "RES 60 40");
-    let place = Folder::new(&scene);
+    let place = Folder::with_scene(&scene);
     let output = place
         .run("render --device gpu --precision fast --verify 0 scene.txt -o out.png --aov error --aov-format pfm,png");
     assert_exit(&output, 0, "2 files of values from the CPU reference");
@@ -289,4 +261,127 @@ fn errors_are_those_of_the_devices_picture() {
         assert_eq!(f32::from(level) - f32::from(expected), error);
     }
     assert_eq!(Picture::read(place.path("out.error.png")).unwrap().pixel_count(), 60 * 40);
+}
+
+/// All that a device tells.
+const TOLD: [Aov; 12] = [
+    Aov::Color,
+    Aov::T,
+    Aov::Sphere,
+    Aov::Inside,
+    Aov::Position,
+    Aov::Normal,
+    Aov::NDotL,
+    Aov::Shadow,
+    Aov::Background,
+    Aov::Ambient,
+    Aov::Diffuse,
+    Aov::Specular,
+];
+
+/// Compares what a device tells with what the reference has.
+fn assert_told(what: &str, gpu: &Gpu, tier: Tier, scene: &Scene, settings: &Settings) {
+    let viewed = scene.viewed(settings);
+    let mut device = DeviceLayers::new(gpu, tier, &viewed, &Effects::of(&viewed)).unwrap();
+    // Beside those, nothing.
+    let all = [&TOLD[..], &[Aov::Bounce, Aov::Rays, Aov::Tests, Aov::Margin, Aov::Step, Aov::Error]].concat();
+    let found = device.layers(&inspector(scene, settings).0, &all).unwrap();
+    let told: Vec<Aov> = TOLD.into_iter().filter(|&aov| device.tells(aov)).collect();
+    assert_eq!(told.len(), if settings.samples_per_side > 1 { 5 } else { TOLD.len() }, "{what}");
+    let expected = layers_of(scene, settings, &told).unwrap();
+    let names = |layers: &[Layer]| layers.iter().map(|layer| layer.name.clone()).collect::<Vec<_>>();
+    assert_eq!(names(&found), names(&expected), "{what}");
+    let is_double = tier == Tier::Double && gpu.device.info.f64;
+    // They are the device's own.
+    assert!(tier != Tier::Fast || found != expected, "{what}");
+    for (layer, expected) in found.iter().zip(&expected) {
+        assert_eq!((layer.width, layer.height, layer.values.len()), (scene.width, scene.height, expected.values.len()));
+        let greatest = expected.values.iter().filter(|x| x.is_finite()).fold(0.0, |most: f32, x| most.max(x.abs()));
+        // Mirrors between them magnify what rounding has moved.
+        let within = greatest
+            * match tier {
+                Tier::Fast => 1e-4,
+                Tier::Double if is_double => 1e-6,
+                Tier::Robust | Tier::Double => 1e-5,
+            };
+        let pairs = layer.values.iter().zip(&expected.values);
+        let off = pairs.filter(|(a, b)| a != b && !((**a - **b).abs() <= within)).count();
+        let most = if is_double { 0 } else { layer.values.len() / 50 };
+        assert!(off <= most, "{what}: {} has {off} of {} numbers off", layer.name, layer.values.len());
+    }
+}
+
+/// At every tier, with mirrors, glass, shadows, ellipsoids and inner walls, in other units and from another eye.
+#[test]
+fn what_a_device_tells_is_the_references_to_within_rounding() {
+    let test = "aov::what_a_device_tells_is_the_references_to_within_rounding";
+    let Some(device) = gpu(test) else { return };
+    let eye = View::new(DVec3::new(0.5, 0.25, 1.0), None, DVec3::Y).unwrap();
+    for name in ["effects/everything.txt", "effects/refraction.txt", "show/showcase.txt", "basic/ellipsoid.txt"] {
+        let scene = small(name);
+        for &tier in device.ladder() {
+            for settings in [Settings::classic(), Settings { samples_per_side: 2, ..Settings::exact() }] {
+                let what = format!("{name} at {tier}, {} samples", settings.samples_per_side.pow(2));
+                assert_told(&what, &device, tier, &scene, &settings);
+            }
+            let moved = Settings { view: eye, ..Settings::exact() };
+            assert_told(&format!("{name} from elsewhere at {tier}"), &device, tier, &scene, &moved);
+        }
+    }
+    let scene = small("effects/everything.txt");
+    for factor in [2_f64.powi(60), 2_f64.powi(-60)] {
+        assert_told("in other units", &device, Tier::Fast, &scaled(&scene, factor), &Settings::exact());
+    }
+    drop(device);
+    let pairs = pairs().unwrap();
+    assert_told("double without f64", &pairs, Tier::Double, &scene, &Settings::exact());
+}
+
+/// Pixels that the picture has from the reference have its numbers.
+#[test]
+fn what_the_reference_decides_is_told_by_it() {
+    let Some(gpu) = gpu("aov::what_the_reference_decides_is_told_by_it") else { return };
+    // The ray of the pixel in the middle touches the sphere.
+    let mut scene = scene_of("SPHERE s 1 0 -5 1 1 1 1 0 0 1 0 0 0 1\nAMBIENT 1 1 1\n");
+    (scene.width, scene.height) = (8, 8);
+    let (settings, middle) = (Settings::classic(), 4 * 8 + 4);
+    let expected = layers_of(&scene, &settings, &TOLD).unwrap();
+    let viewed = scene.viewed(&settings);
+    let mut device = DeviceLayers::new(&gpu, Tier::Robust, &viewed, &Effects::of(&viewed)).unwrap();
+    let found = device.layers(&inspector(&scene, &settings).0, &TOLD).unwrap();
+    for (layer, expected) in found.iter().zip(&expected) {
+        let at = middle * layer.channels()..(middle + 1) * layer.channels();
+        assert_eq!(layer.values[at.clone()], expected.values[at], "{}", layer.name);
+    }
+}
+
+#[test]
+fn files_say_where_their_values_are_from() {
+    if gpu("aov::files_say_where_their_values_are_from").is_none() {
+        return;
+    }
+    let place = Folder::with_scene(SCENE);
+    let told = "render --device gpu --precision fast scene.txt -o out.png --aov-from device";
+    let output = place.run(&format!("{told} --aov t,margin,normal --aov-format png,exr"));
+    assert_exit(&output, 0, "4 files of values from ");
+    assert_exit(&output, 0, " at fast (t, normal) and the CPU reference (margin): ");
+    for (name, from) in [("t", " at fast (t)"), ("margin", "from the CPU reference (margin)")] {
+        let file = fs::File::open(place.path(&format!("out.{name}.png"))).unwrap();
+        let reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().unwrap();
+        let [text] = &reader.info().utf8_text[..] else { panic!("{name}") };
+        let note = text.get_text().unwrap();
+        assert!(text.keyword == "Source" && note.starts_with("values from ") && note.ends_with(from), "{note}");
+    }
+    let file = read().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes();
+    let file = file.from_file(place.path("out.aov.exr")).unwrap();
+    let comments = file.layer_data[0].attributes.comments.clone().unwrap().to_string();
+    assert!(comments.ends_with(" at fast (t, normal) and the CPU reference (margin)"), "{comments}");
+    for (arguments, message) in [
+        ("--device cpu --aov t --aov-from device", "the CPU reference renders this picture"),
+        ("--device gpu --precision certified --aov t --aov-from device", "does not go with --precision certified"),
+        ("--device gpu --aov-from device", "--aov"),
+    ] {
+        assert_exit(&place.run(&format!("render scene.txt -o refused.png {arguments}")), 2, message);
+    }
+    assert!(!place.path("refused.png").exists());
 }

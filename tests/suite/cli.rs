@@ -1,70 +1,24 @@
 //! The program as its users run it: exit codes, messages, files.
 
-use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-use tempfile::TempDir;
-
-use crate::support::{driver_cache, gpu, say_skipped};
+use crate::support::{Folder, assert_exit, driver_cache, gpu, say_skipped};
 
 const SCENE: &str = "NEAR 1\nLEFT -1\nRIGHT 1\nBOTTOM -1\nTOP 1\nRES 16 8\nSPHERE s 0 0 -5 2 2 2 1 0 0 1 0 0 0 1\n\
                      AMBIENT 1 1 1\nBACK 0 0 1\nOUTPUT out.ppm\n";
 
-/// A folder with `scene.txt` in it, where the program runs.
-struct Folder(TempDir);
-
-impl Folder {
-    fn new(scene: &str) -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        std::fs::write(folder.path().join("scene.txt"), scene).unwrap();
-        Self(folder)
-    }
-
-    fn path(&self) -> &Path {
-        self.0.path()
-    }
-
-    fn command(&self, arguments: &str) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_trueray"));
-        command.args(arguments.split_whitespace()).current_dir(self.path()).stdin(Stdio::null());
-        for variable in ["WGPU_ADAPTER_NAME", "WGPU_BACKEND", "WGPU_POWER_PREF"] {
-            command.env_remove(variable);
-        }
-        command
-    }
-
-    fn run(&self, arguments: &str) -> Output {
-        self.command(arguments).output().unwrap()
-    }
-
-    /// Runs without any Vulkan driver.
-    fn run_without_driver(&self, arguments: &str) -> Output {
-        let nowhere = self.path().join("no-driver.json");
-        let mut command = self.command(arguments);
-        command.env("VK_DRIVER_FILES", &nowhere).env("VK_ICD_FILENAMES", &nowhere).output().unwrap()
-    }
-
-    fn files(&self) -> Vec<String> {
-        let entries = std::fs::read_dir(self.path()).unwrap();
-        let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-        names.sort();
-        names
-    }
-}
-
-#[track_caller]
-fn assert_exit(output: &Output, code: i32, message: &str) {
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(code), "{stderr}");
-    assert!(stderr.contains(message), "expected '{message}' in:\n{stderr}");
-    assert!(!stderr.contains("panicked"), "{stderr}");
+/// Runs without any Vulkan driver.
+fn run_without_driver(place: &Folder, arguments: &str) -> Output {
+    let nowhere = place.path("no-driver.json");
+    let mut command = place.command(arguments);
+    command.env("VK_DRIVER_FILES", &nowhere).env("VK_ICD_FILENAMES", &nowhere).output().unwrap()
 }
 
 #[test]
 fn one_argument_writes_output_into_the_working_directory() {
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     let folder = tempfile::tempdir().unwrap();
-    let scene = place.path().join("scene.txt");
+    let scene = place.folder().join("scene.txt");
     let mut command = Command::new(env!("CARGO_BIN_EXE_trueray"));
     let output = command.arg(&scene).current_dir(folder.path()).output().unwrap();
     assert_exit(&output, 0, "out.ppm: 16 × 8 on ");
@@ -77,7 +31,7 @@ fn one_argument_writes_output_into_the_working_directory() {
 /// Two rows of pixels a line, to their side the messages.
 #[test]
 fn a_picture_is_shown_in_the_terminal() {
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     let shown = stdout(place.run("render --device cpu scene.txt --show"));
     assert_eq!((shown.lines().count(), shown.matches('▀').count()), (4, 16 * 4), "{shown}");
     assert!(shown.starts_with("\x1b[38;2;0;0;255m\x1b[48;2;0;0;255m▀"), "{shown:?}");
@@ -87,15 +41,15 @@ fn a_picture_is_shown_in_the_terminal() {
 
 #[test]
 fn without_output_the_scene_names_the_picture() {
-    let place = Folder::new(&SCENE.replace("OUTPUT out.ppm\n", ""));
+    let place = Folder::with_scene(&SCENE.replace("OUTPUT out.ppm\n", ""));
     assert_exit(&place.run("render --device cpu scene.txt"), 0, "scene.ppm");
     assert_eq!(place.files(), ["scene.ppm", "scene.txt"]);
 }
 
 #[test]
 fn renders_without_a_driver_on_the_reference_and_says_so() {
-    let place = Folder::new(SCENE);
-    let output = place.run_without_driver("scene.txt");
+    let place = Folder::with_scene(SCENE);
+    let output = run_without_driver(&place, "scene.txt");
     assert_exit(&output, 0, "rendering on the CPU reference: no Vulkan device");
     // Why there is none: the one driver that was asked for is not there.
     assert_exit(&output, 0, "no-driver.json");
@@ -105,17 +59,17 @@ fn renders_without_a_driver_on_the_reference_and_says_so() {
 
 #[test]
 fn a_required_device_never_falls_back() {
-    let place = Folder::new(SCENE);
-    assert_exit(&place.run_without_driver("render --device gpu scene.txt"), 4, "no-driver.json");
-    assert_exit(&place.run_without_driver("render --device 0 scene.txt"), 4, "no-driver.json");
-    assert_exit(&place.run_without_driver("devices"), 4, "`--device cpu` renders without any");
+    let place = Folder::with_scene(SCENE);
+    assert_exit(&run_without_driver(&place, "render --device gpu scene.txt"), 4, "no-driver.json");
+    assert_exit(&run_without_driver(&place, "render --device 0 scene.txt"), 4, "no-driver.json");
+    assert_exit(&run_without_driver(&place, "devices"), 4, "`--device cpu` renders without any");
     assert_eq!(place.files(), ["scene.txt"]);
 }
 
 #[test]
 fn a_device_that_is_not_there_lists_those_that_are() {
     let Some(gpu) = gpu("a_device_that_is_not_there_lists_those_that_are") else { return };
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     let name = &gpu.device.info.name;
     for arguments in ["render --device 99 scene.txt", "render --device no-such-device scene.txt"] {
         let output = place.run(arguments);
@@ -138,10 +92,10 @@ fn a_device_that_is_not_there_lists_those_that_are() {
 #[test]
 fn cpu_and_gpu_write_the_same_simple_picture() {
     let Some(_gpu) = gpu("cpu_and_gpu_write_the_same_simple_picture") else { return };
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     assert_exit(&place.run("render --device cpu -o cpu.ppm scene.txt"), 0, "");
     assert_exit(&place.run("render --device gpu -o gpu.ppm scene.txt"), 0, "");
-    let [cpu, gpu] = ["cpu.ppm", "gpu.ppm"].map(|name| std::fs::read(place.path().join(name)).unwrap());
+    let [cpu, gpu] = ["cpu.ppm", "gpu.ppm"].map(|name| std::fs::read(place.folder().join(name)).unwrap());
     assert!(cpu == gpu);
     assert_exit(&place.run("compare cpu.ppm gpu.ppm"), 0, "");
     assert_exit(&place.run("compare --scene scene.txt gpu.ppm"), 0, "");
@@ -172,23 +126,23 @@ fn bad_scenes_are_refused_and_touch_nothing() {
         (String::new(), "NEAR"),
     ];
     for (scene, message) in cases {
-        let place = Folder::new(&scene);
-        std::fs::write(place.path().join("out.ppm"), "old").unwrap();
+        let place = Folder::with_scene(&scene);
+        std::fs::write(place.folder().join("out.ppm"), "old").unwrap();
         let output = place.run("render --device cpu scene.txt");
         assert_exit(&output, 3, message);
         assert_exit(&output, 3, "scene.txt:");
-        assert_eq!(std::fs::read(place.path().join("out.ppm")).unwrap(), b"old");
+        assert_eq!(std::fs::read(place.folder().join("out.ppm")).unwrap(), b"old");
         assert_eq!(place.files(), ["out.ppm", "scene.txt"]);
     }
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     assert_exit(&place.run("nowhere.txt"), 3, "cannot read the scene nowhere.txt");
     assert_exit(&place.run("render --device cpu ."), 3, "cannot read the scene .");
 }
 
 #[test]
 fn a_bad_scene_does_not_keep_the_others_from_being_rendered() {
-    let place = Folder::new(SCENE);
-    std::fs::write(place.path().join("bad.txt"), "NEAR").unwrap();
+    let place = Folder::with_scene(SCENE);
+    std::fs::write(place.folder().join("bad.txt"), "NEAR").unwrap();
     assert_exit(&place.run("render --device cpu bad.txt scene.txt"), 3, "out.ppm: 16 × 8");
     assert_eq!(place.files(), ["bad.txt", "out.ppm", "scene.txt"]);
 }
@@ -197,16 +151,16 @@ fn a_bad_scene_does_not_keep_the_others_from_being_rendered() {
 #[test]
 fn a_tree_of_rays_that_never_ends_is_refused() {
     let glass = |kr: &str| SCENE.to_owned() + &format!("SPHERE t 0 0 -9 1 1 1 1 1 1 1 1 1 {kr} 50 0.5 1.5\n");
-    let place = Folder::new(&glass("0.1"));
+    let place = Folder::with_scene(&glass("0.1"));
     assert_exit(&place.run("render --device cpu --max-depth 33 scene.txt"), 2, "--max-depth 32 is the most");
     assert_eq!(place.files(), ["scene.txt"]);
     assert_exit(&place.run("render --device cpu --max-depth 32 scene.txt"), 0, "out.ppm");
-    assert_exit(&Folder::new(&glass("0")).run("render --device cpu --max-depth 1000 scene.txt"), 0, "out.ppm");
+    assert_exit(&Folder::with_scene(&glass("0")).run("render --device cpu --max-depth 1000 scene.txt"), 0, "out.ppm");
 }
 
 #[test]
 fn wrong_arguments_are_usage_errors() {
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     for arguments in [
         "",
         "render",
@@ -229,21 +183,21 @@ fn wrong_arguments_are_usage_errors() {
 
 #[test]
 fn output_that_cannot_be_written_is_its_own_code() {
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     assert_exit(&place.run("render --device cpu -o missing/out.ppm scene.txt"), 6, "missing/out.ppm");
     assert_exit(
         &place.run("render --device cpu -o scene.txt scene.txt"),
         6,
         "would overwrite scene.txt, an input of this run",
     );
-    assert_eq!(std::fs::read_to_string(place.path().join("scene.txt")).unwrap(), SCENE);
+    assert_eq!(std::fs::read_to_string(place.folder().join("scene.txt")).unwrap(), SCENE);
     assert_exit(&place.run("render --device cpu --stats-json missing/stats.json scene.txt"), 6, "missing/stats.json");
     assert_exit(&place.run("render --device cpu --timeline missing/t.json scene.txt"), 6, "missing/t.json");
 }
 
 #[test]
 fn pictures_go_to_standard_output_in_every_format() {
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     for (format, magic) in [("p6", &b"P6\n16 8\n255\n"[..]), ("p3", b"P3\n16 8\n255\n"), ("png", b"\x89PNG\r\n")] {
         let output = place.run(&format!("render --device cpu --format {format} -o - scene.txt"));
         assert_exit(&output, 0, "standard output: 16 × 8");
@@ -254,8 +208,8 @@ fn pictures_go_to_standard_output_in_every_format() {
 
 #[test]
 fn a_scene_comes_from_standard_input() {
-    let place = Folder::new(SCENE);
-    let file = std::fs::File::open(place.path().join("scene.txt")).unwrap();
+    let place = Folder::with_scene(SCENE);
+    let file = std::fs::File::open(place.folder().join("scene.txt")).unwrap();
     let output = place.command("render --device cpu -q -").stdin(file).output().unwrap();
     assert_exit(&output, 0, "");
     assert!(output.stderr.is_empty());
@@ -264,9 +218,9 @@ fn a_scene_comes_from_standard_input() {
 
 #[test]
 fn stats_tell_device_effects_rays_and_times() {
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     assert_exit(&place.run("render --device cpu --res 20x10 --stats-json stats.json scene.txt"), 0, "20 × 10");
-    let stats = std::fs::read_to_string(place.path().join("stats.json")).unwrap();
+    let stats = std::fs::read_to_string(place.folder().join("stats.json")).unwrap();
     let stats: serde_json::Value = serde_json::from_str(&stats).unwrap();
     let stats = &stats["pictures"][0];
     assert_eq!(stats["device"], "the CPU reference (f64)");
@@ -279,16 +233,16 @@ fn stats_tell_device_effects_rays_and_times() {
         assert!(stats[time].is_f64(), "{time}");
     }
     assert_exit(&place.run("render --device cpu --stats-json stats.json --no-ray-counts scene.txt"), 0, "");
-    assert!(std::fs::read_to_string(place.path().join("stats.json")).unwrap().contains("\"rays\": null"));
+    assert!(std::fs::read_to_string(place.folder().join("stats.json")).unwrap().contains("\"rays\": null"));
     assert_exit(&place.run("render --device cpu --stats --explain scene.txt"), 0, "effects (depth 0)");
 }
 
 #[test]
 fn a_timeline_has_every_step_from_begin_to_end() {
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     let steps = |device: &str| {
         assert_exit(&place.run(&format!("render --device {device} --timeline t.json scene.txt")), 0, "");
-        let text = std::fs::read_to_string(place.path().join("t.json")).unwrap();
+        let text = std::fs::read_to_string(place.folder().join("t.json")).unwrap();
         let events: Vec<serde_json::Value> = serde_json::from_str(&text).unwrap();
         let of_phase = |phase: &str| {
             let events = events.iter().filter(|event| event["ph"] == phase);
@@ -321,14 +275,14 @@ fn a_timeline_has_every_step_from_begin_to_end() {
 
 #[test]
 fn check_summarises_without_rendering() {
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     let output = place.run("check scene.txt");
     assert_exit(&output, 0, "");
     let text = String::from_utf8(output.stdout).unwrap();
     for part in ["16 × 8, 1 sphere, 0 lights", "(-2, -2, -7) to (2, 2, -3)", "sphere 's' has Ka > 0", "no warnings"] {
         assert!(text.contains(part), "{part} in {text}");
     }
-    std::fs::write(place.path().join("bad.txt"), SCENE.replace("TOP", "TP")).unwrap();
+    std::fs::write(place.folder().join("bad.txt"), SCENE.replace("TOP", "TP")).unwrap();
     let output = place.run("check --json scene.txt bad.txt");
     assert_exit(&output, 3, "");
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -340,7 +294,7 @@ fn check_summarises_without_rendering() {
 
 #[test]
 fn compare_has_three_exit_codes_and_draws_its_findings() {
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     assert_exit(&place.run("render --device cpu -q -o a.ppm scene.txt"), 0, "");
     assert_exit(&place.run("render --device cpu -q --effects none -o b.png scene.txt"), 0, "");
     assert_exit(&place.run("compare a.ppm a.ppm"), 0, "");
@@ -366,7 +320,7 @@ fn compare_has_three_exit_codes_and_draws_its_findings() {
 
 #[test]
 fn pictures_are_the_same_bytes_every_time() {
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     for format in ["p6", "p3", "png"] {
         let run = || place.run(&format!("render --format {format} -o - scene.txt")).stdout;
         assert!(run() == run(), "{format}");
@@ -375,13 +329,13 @@ fn pictures_are_the_same_bytes_every_time() {
 
 #[test]
 fn stress_lists_judges_and_fails_where_a_promise_is_broken() {
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     let list = place.run("stress --list");
     assert_exit(&list, 0, "");
     assert!(String::from_utf8(list.stdout).unwrap().contains("terminator"));
     assert_exit(&place.run("stress --class no-such-class"), 2, "");
     assert_exit(&place.run("stress --precision exact"), 2, "");
-    assert_exit(&place.run_without_driver("stress --count 100"), 4, "no Vulkan device");
+    assert_exit(&run_without_driver(&place, "stress --count 100"), 4, "no Vulkan device");
 
     let Some(_gpu) = gpu("stress_lists_judges_and_fails_where_a_promise_is_broken") else { return };
     let output = place.run("stress --count 20000 --class far --precision fast --json");
@@ -395,8 +349,8 @@ fn stress_lists_judges_and_fails_where_a_promise_is_broken() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_huge_picture_needs_little_memory() {
-    let place = Folder::new(&SCENE.replace("RES 16 8", "RES 20000 20000"));
-    let scene = place.path().join("scene.txt");
+    let place = Folder::with_scene(&SCENE.replace("RES 16 8", "RES 20000 20000"));
+    let scene = place.folder().join("scene.txt");
     let small = peak_memory(place.command("render -q --res 8x8 -o /dev/null scene.txt"));
     let huge = peak_memory(place.command("render -q -o /dev/null scene.txt"));
     assert!(scene.exists());
@@ -422,7 +376,7 @@ fn peak_memory(mut command: Command) -> i64 {
 /// A reader that has seen enough, as `head` has, is no reason to panic or to change the exit code.
 #[test]
 fn a_closed_pipe_is_no_panic() {
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     for arguments in ["check scene.txt", "--help", "stress --list", "compare --json scene.txt scene.txt"] {
         let mut child = place.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         drop(child.stdout.take());
@@ -439,7 +393,7 @@ fn scenes_beyond_the_range_of_numbers_are_refused() {
     let too_bright = bright.replace("AMBIENT 1 1 1", "AMBIENT 1 1 1e150");
     let tiny = format!("{SCENE}SPHERE t 0 0 -5 1e-200 1 1 1 1 1 1 0 0 0 1\n");
     for (scene, reason) in [(&too_bright, "sphere 's'"), (&tiny, "sphere 't'")] {
-        let place = Folder::new(scene);
+        let place = Folder::with_scene(scene);
         let check = place.run("check scene.txt");
         assert_exit(&check, 3, "");
         assert!(String::from_utf8_lossy(&check.stdout).contains("the scene cannot be rendered"));
@@ -450,7 +404,7 @@ fn scenes_beyond_the_range_of_numbers_are_refused() {
         }
         assert_eq!(place.files(), ["scene.txt"]);
     }
-    let place = Folder::new(&bright);
+    let place = Folder::with_scene(&bright);
     assert_exit(&place.run("render scene.txt --device cpu -o c.ppm"), 0, "");
     if let Some(gpu) = gpu("scenes_beyond_the_range_of_numbers_are_refused") {
         assert_exit(&place.run("render scene.txt --precision fast -o f.ppm"), 4, "fast cannot render this scene");
@@ -469,7 +423,7 @@ fn scenes_beyond_the_range_of_numbers_are_refused() {
 #[test]
 fn a_cache_folder_that_cannot_be_used_is_no_news() {
     let Some(gpu) = gpu("a_cache_folder_that_cannot_be_used_is_no_news") else { return };
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     let run = |variables: &[(&str, &str)]| {
         let arguments = format!("render -q --precision robust --device {} scene.txt", gpu.device.info.index);
         let mut command = place.command(&arguments);
@@ -499,19 +453,19 @@ fn a_cache_folder_that_cannot_be_used_is_no_news() {
 #[cfg(target_os = "linux")]
 #[test]
 fn few_threads_are_enough() {
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     let mut many = place.command("render --device cpu scene.txt");
     let start = std::time::Instant::now();
     assert_exit(&many.env("RAYON_NUM_THREADS", "100000").output().unwrap(), 0, "out.ppm");
     assert!(start.elapsed().as_secs() < 30);
 
     // The system's limit is for users, not for root: another user's command of the same program, with as few threads as this.
-    let folder = place.path().join("nobody");
-    let program = place.path().join("program");
+    let folder = place.folder().join("nobody");
+    let program = place.folder().join("program");
     std::fs::create_dir(&folder).unwrap();
     std::fs::write(folder.join("scene.txt"), SCENE).unwrap();
     std::fs::copy(env!("CARGO_BIN_EXE_trueray"), &program).unwrap();
-    for path in [place.path(), &folder] {
+    for path in [place.folder(), &folder] {
         std::fs::set_permissions(path, std::os::unix::fs::PermissionsExt::from_mode(0o777)).unwrap();
     }
     let limited = |threads: u32, arguments: &str| {
@@ -545,7 +499,7 @@ fn the_shader_of_a_scene_can_be_read() {
     if gpu("the_shader_of_a_scene_can_be_read").is_none() {
         return;
     }
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     let printed = |arguments: &str| {
         let output = place.run(&format!("shader scene.txt {arguments}"));
         assert_exit(&output, 0, "");
@@ -576,9 +530,9 @@ fn the_shader_of_a_scene_can_be_read() {
 
 #[test]
 fn a_shader_that_is_not_there_is_refused_with_those_that_are() {
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     assert_exit(&place.run("shader --device cpu scene.txt"), 2, "the CPU reference runs no shader");
-    assert_exit(&place.run_without_driver("shader scene.txt"), 4, "");
+    assert_exit(&run_without_driver(&place, "shader scene.txt"), 4, "");
     assert_exit(&place.run("shader missing.txt"), 3, "cannot read the scene missing.txt");
     if gpu("a_shader_that_is_not_there_is_refused_with_those_that_are").is_some() {
         let message = "this picture has no kernel `walk_paths`\n  help: it has trace_tiles, resolve";
@@ -602,7 +556,7 @@ fn commands(place: &Folder) -> Vec<String> {
 /// Whether every option of an example is there and has a value of its kind: `--help` at its end is what is carried out.
 #[test]
 fn each_command_has_two_examples_that_are_understood() {
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     let commands = commands(&place);
     assert!(commands.len() > 8, "{commands:?}");
     for command in commands {
@@ -621,7 +575,7 @@ fn each_command_has_two_examples_that_are_understood() {
 /// Nothing is left for the group without a subject but what every program has.
 #[test]
 fn options_stand_in_groups() {
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     let groups = |command: &str| {
         let help = stdout(place.run(&format!("{command} -h")));
         let mut groups: Vec<(String, Vec<String>)> = Vec::new();
@@ -653,10 +607,10 @@ fn options_stand_in_groups() {
 /// Without any driver: no device is looked for.
 #[test]
 fn the_version_is_short_and_long() {
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     let version = env!("CARGO_PKG_VERSION");
-    assert_eq!(stdout(place.run_without_driver("-V")), format!("trueray {version}\n"));
-    let long = stdout(place.run_without_driver("--version"));
+    assert_eq!(stdout(run_without_driver(&place, "-V")), format!("trueray {version}\n"));
+    let long = stdout(run_without_driver(&place, "--version"));
     assert!(long.starts_with(&format!("trueray {version}\ncommit ")), "{long}");
     for part in [std::env::consts::OS, std::env::consts::ARCH, "features "] {
         assert!(long.contains(part), "{part} in {long}");
@@ -665,9 +619,9 @@ fn the_version_is_short_and_long() {
 
 #[test]
 fn completions_know_every_command_in_every_shell() {
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
-        let script = stdout(place.run_without_driver(&format!("completions {shell}")));
+        let script = stdout(run_without_driver(&place, &format!("completions {shell}")));
         for command in commands(&place) {
             assert!(script.contains(&command), "{command} for {shell}");
         }
@@ -678,15 +632,15 @@ fn completions_know_every_command_in_every_shell() {
 
 #[test]
 fn every_command_has_a_manual_page() {
-    let place = Folder::new(SCENE);
-    let page = stdout(place.run_without_driver("man"));
+    let place = Folder::with_scene(SCENE);
+    let page = stdout(run_without_driver(&place, "man"));
     assert!(page.contains(".TH trueray 1") && page.contains("Exit codes"), "{page}");
     for command in commands(&place) {
         assert!(page.contains(&format!("trueray\\-{command}(1)")), "{command} in {page}");
-        let page = stdout(place.run_without_driver(&format!("man {command}")));
+        let page = stdout(run_without_driver(&place, &format!("man {command}")));
         assert!(page.contains(&format!(".TH trueray-{command} 1")) && page.contains("Examples:"), "{page}");
     }
-    let version = stdout(place.run_without_driver("--version"));
+    let version = stdout(run_without_driver(&place, "--version"));
     let (_, last) = page.split_once(".SH VERSION\n").unwrap();
     assert!(last.starts_with(".nf\n") && last.lines().count() == 1 + version.lines().count(), "{last}");
     assert_exit(&place.run("man walk"), 2, "there is no command `walk`");
@@ -696,7 +650,7 @@ fn every_command_has_a_manual_page() {
 #[cfg(target_os = "linux")]
 #[test]
 fn what_does_not_fit_on_the_disk_is_no_success() {
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     let run = |arguments: &str| {
         let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
         place.command(arguments).stdout(full).output().unwrap()
@@ -710,15 +664,15 @@ fn what_does_not_fit_on_the_disk_is_no_success() {
 /// `--device cpu` is a way out where it is one.
 #[test]
 fn only_commands_that_take_the_reference_advise_it() {
-    let place = Folder::new(SCENE);
+    let place = Folder::with_scene(SCENE);
     let help = "help: `--device cpu` renders without any";
     for arguments in ["render --device gpu scene.txt", "study --device gpu scene.txt", "bench --device gpu", "devices"]
     {
-        assert_exit(&place.run_without_driver(arguments), 4, help);
+        assert_exit(&run_without_driver(&place, arguments), 4, help);
     }
     for arguments in ["stress", "shader scene.txt", "bench --tune", "compare --scene scene.txt"] {
         let code = if arguments.starts_with("compare") { 2 } else { 4 };
-        let output = place.run_without_driver(arguments);
+        let output = run_without_driver(&place, arguments);
         assert_exit(&output, code, "no Vulkan device");
         assert!(!String::from_utf8_lossy(&output.stderr).contains("--device cpu"), "{arguments}");
     }

@@ -6,9 +6,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use tempfile::TempDir;
-
-use crate::support::{gpu, say};
+use crate::support::{Folder, gpu, say};
 
 /// A scene without its size and its OUTPUT.
 const SCENE: &str =
@@ -16,59 +14,15 @@ const SCENE: &str =
 /// A picture that was there before.
 const OLD: &str = "P6\n1 1\n255\nold";
 
-/// A folder where the program runs.
-struct Folder(TempDir);
+/// With a small scene in `scene.txt` that ends in these lines.
+fn with_scene(lines: &str) -> Folder {
+    let place = Folder::new();
+    write_scene(&place, "scene.txt", &format!("RES 16 8\n{lines}"));
+    place
+}
 
-impl Folder {
-    fn new() -> Self {
-        Self(tempfile::tempdir().unwrap())
-    }
-
-    /// With a small scene in `scene.txt` that ends in these lines.
-    fn with_scene(lines: &str) -> Self {
-        let place = Self::new();
-        place.scene("scene.txt", &format!("RES 16 8\n{lines}"));
-        place
-    }
-
-    fn scene(&self, name: &str, lines: &str) {
-        self.write(name, &format!("{SCENE}{lines}\n"));
-    }
-
-    fn path(&self, name: &str) -> std::path::PathBuf {
-        self.0.path().join(name)
-    }
-
-    fn write(&self, name: &str, text: &str) {
-        fs::write(self.path(name), text).unwrap();
-    }
-
-    fn read(&self, name: &str) -> Vec<u8> {
-        fs::read(self.path(name)).unwrap()
-    }
-
-    fn files(&self) -> Vec<String> {
-        let entries = fs::read_dir(self.0.path()).unwrap();
-        let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-        names.sort();
-        names
-    }
-
-    fn command(&self, arguments: &str) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_trueray"));
-        command.args(arguments.split_whitespace()).current_dir(self.0.path()).stdin(Stdio::null());
-        command
-    }
-
-    /// Runs, and compares code and message.
-    #[track_caller]
-    fn run(&self, arguments: &str, code: i32, message: &str) -> Output {
-        let output = self.command(arguments).output().unwrap();
-        let stderr = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(code), "{arguments}: {stderr}");
-        assert!(stderr.contains(message), "{arguments}: expected '{message}' in:\n{stderr}");
-        output
-    }
+fn write_scene(place: &Folder, name: &str, lines: &str) {
+    place.write(name, format!("{SCENE}{lines}\n"));
 }
 
 // --- inputs and outputs ---------------------------------------------------------------------------------------------
@@ -78,10 +32,10 @@ impl Folder {
 #[test]
 fn no_input_is_an_output_under_whatever_name() {
     let place = Folder::new();
-    place.scene("a.txt", "RES 16 8\nOUTPUT b.txt");
-    place.scene("b.txt", "RES 16 8\nOUTPUT b.ppm");
-    place.run("render -q --device cpu b.txt -o p.ppm", 0, "");
-    place.run("render -q --device cpu b.txt -o q.png", 0, "");
+    write_scene(&place, "a.txt", "RES 16 8\nOUTPUT b.txt");
+    write_scene(&place, "b.txt", "RES 16 8\nOUTPUT b.ppm");
+    place.exits("render -q --device cpu b.txt -o p.ppm", 0, "");
+    place.exits("render -q --device cpu b.txt -o q.png", 0, "");
     std::os::unix::fs::symlink("b.txt", place.path("soft.ppm")).unwrap();
     fs::hard_link(place.path("b.txt"), place.path("hard.ppm")).unwrap();
     fs::create_dir(place.path("folder")).unwrap();
@@ -105,7 +59,7 @@ fn no_input_is_an_output_under_whatever_name() {
         ("compare p.ppm q.png --three-wide q.png", 2),
         ("compare --scene hard.ppm p.ppm --heatmap b.txt", 2),
     ] {
-        place.run(arguments, code, input);
+        place.exits(arguments, code, input);
         let after: Vec<_> = ["a.txt", "b.txt", "p.ppm", "q.png"].map(|name| place.read(name)).into();
         assert!(before == after && files == place.files(), "{arguments}");
     }
@@ -123,8 +77,8 @@ fn no_input_is_an_output_under_whatever_name() {
 #[test]
 fn no_two_outputs_are_one_file() {
     let place = Folder::new();
-    place.scene("a.txt", "RES 16 8\nOUTPUT out.ppm");
-    place.scene("b.txt", "RES 16 8\nOUTPUT out.ppm");
+    write_scene(&place, "a.txt", "RES 16 8\nOUTPUT out.ppm");
+    write_scene(&place, "b.txt", "RES 16 8\nOUTPUT out.ppm");
     fs::create_dir(place.path("folder")).unwrap();
     let files = place.files();
     for (arguments, code) in [
@@ -138,12 +92,12 @@ fn no_two_outputs_are_one_file() {
         ("bench --no-cpu --report r --json folder/../r", 6),
         ("compare a.ppm b.ppm --heatmap h.ppm --three-wide h.ppm", 2),
     ] {
-        place.run(arguments, code, "would overwrite");
+        place.exits(arguments, code, "would overwrite");
         assert_eq!(place.files(), files, "{arguments}");
         assert_eq!(fs::read_dir(place.path("folder")).unwrap().count(), 0, "{arguments}");
     }
     // Nothing is lost in a device.
-    place.run("render --device cpu a.txt -o /dev/null --stats-json /dev/null", 0, "");
+    place.exits("render --device cpu a.txt -o /dev/null --stats-json /dev/null", 0, "");
 }
 
 /// The part of a name after its last dot is no more of it than that.
@@ -151,9 +105,9 @@ fn no_two_outputs_are_one_file() {
 fn scenes_without_output_have_a_name_each() {
     let place = Folder::new();
     for name in ["v.1.txt", "v.2.txt", "plain"] {
-        place.scene(name, "RES 16 8");
+        write_scene(&place, name, "RES 16 8");
     }
-    place.run("render -q --device cpu v.1.txt v.2.txt plain", 0, "");
+    place.exits("render -q --device cpu v.1.txt v.2.txt plain", 0, "");
     assert_eq!(place.files(), ["plain", "plain.ppm", "v.1.ppm", "v.1.txt", "v.2.ppm", "v.2.txt"]);
 }
 
@@ -166,7 +120,7 @@ fn output_is_a_picture_and_replaces_pictures_alone() {
     let outside = Folder::new();
     outside.write("target.ppm", OLD);
     let fresh = |output: &str| {
-        let place = Folder::with_scene(&format!("OUTPUT {output}"));
+        let place = with_scene(&format!("OUTPUT {output}"));
         place.write("text.ppm", "not a picture");
         place.write("P6.ppm", "P6rotten");
         place.write("old.PPM", OLD);
@@ -192,82 +146,82 @@ fn output_is_a_picture_and_replaces_pictures_alone() {
     ] {
         let place = fresh(output);
         let files = place.files();
-        let stderr = place.run("render --device cpu scene.txt", 6, why).stderr;
+        let stderr = place.exits("render --device cpu scene.txt", 6, why).stderr;
         assert!(String::from_utf8(stderr).unwrap().contains("--allow-any-output"));
         assert_eq!(place.files(), files, "{output}");
         assert_eq!(place.read("text.ppm"), b"not a picture");
         assert_eq!(outside.files(), ["target.ppm"]);
         assert_eq!(outside.read("target.ppm"), OLD.as_bytes());
         // Whoever renders may choose the same.
-        place.run("render --device cpu --format p6 --allow-any-output scene.txt", 0, "");
+        place.exits("render --device cpu --format p6 --allow-any-output scene.txt", 0, "");
         fs::write(outside.path("target.ppm"), OLD).unwrap();
         let _ = fs::remove_file(outside.path("nothing.ppm"));
     }
     for output in ["old.PPM", "old.png", "empty.ppm", "in-link.ppm", "new.pnm"] {
-        fresh(output).run("render --device cpu scene.txt", 0, output);
+        fresh(output).exits("render --device cpu scene.txt", 0, output);
     }
     for output in ["a\u{202E}gpj.ppm", "a\u{200B}.ppm"] {
         let place = fresh(output);
         let files = place.files();
-        place.run("render --device cpu scene.txt", 3, "OUTPUT");
+        place.exits("render --device cpu scene.txt", 3, "OUTPUT");
         assert_eq!(place.files(), files);
     }
-    fresh("folder.ppm").run("render --device cpu scene.txt", 6, "no regular file");
+    fresh("folder.ppm").exits("render --device cpu scene.txt", 6, "no regular file");
     // The scene's name is the user's, but the file there need not be a picture.
-    let place = Folder::with_scene("");
+    let place = with_scene("");
     place.write("scene.ppm", "notes");
-    place.run("render --device cpu scene.txt", 6, "does not begin like");
-    place.run("render --device cpu scene.txt -o scene.ppm", 0, "");
+    place.exits("render --device cpu scene.txt", 6, "does not begin like");
+    place.exits("render --device cpu scene.txt -o scene.ppm", 0, "");
 }
 
 /// A scene that is refused does not keep the others from being rendered.
 #[test]
 fn a_refused_name_is_that_scenes_own_trouble() {
-    let place = Folder::with_scene("OUTPUT out.ppm");
-    place.scene("bad.txt", "RES 16 8\nOUTPUT Makefile");
-    place.run("render --device cpu bad.txt scene.txt", 6, "bad.txt: OUTPUT would write `Makefile`");
+    let place = with_scene("OUTPUT out.ppm");
+    write_scene(&place, "bad.txt", "RES 16 8\nOUTPUT Makefile");
+    place.exits("render --device cpu bad.txt scene.txt", 6, "bad.txt: OUTPUT would write `Makefile`");
     assert_eq!(place.files(), ["bad.txt", "out.ppm", "scene.txt"]);
 }
 
 #[test]
 fn an_unknown_ending_is_an_error_unless_a_format_is_asked_for() {
     for name in ["a.bmp", "a.jpg", "a.hdr", "a.tif"] {
-        let place = Folder::with_scene(&format!("OUTPUT {name}"));
-        place.run("scene.txt", 2, ".ppm, .png, .pfm or .exr");
-        place.run(&format!("render --device cpu scene.txt -o x-{name}"), 2, "--format p6, p3, png, pfm or exr");
-        place.run(&format!("compare scene.txt scene.txt --heatmap {name}"), 2, ".ppm or .png");
+        let place = with_scene(&format!("OUTPUT {name}"));
+        place.exits("scene.txt", 2, ".ppm, .png, .pfm or .exr");
+        place.exits(&format!("render --device cpu scene.txt -o x-{name}"), 2, "--format p6, p3, png, pfm or exr");
+        place.exits(&format!("compare scene.txt scene.txt --heatmap {name}"), 2, ".ppm or .png");
         assert_eq!(place.files(), ["scene.txt"]);
-        place.run("render --device cpu --format png scene.txt", 0, "");
+        place.exits("render --device cpu --format png scene.txt", 0, "");
         assert!(place.read(name).starts_with(b"\x89PNG"));
-        place.run(&format!("render --device cpu --format p3 scene.txt -o x-{name}"), 0, "");
+        place.exits(&format!("render --device cpu --format p3 scene.txt -o x-{name}"), 0, "");
         assert!(place.read(&format!("x-{name}")).starts_with(b"P3"));
     }
 }
 
 #[test]
 fn quotes_are_no_part_of_a_name() {
-    let place = Folder::with_scene("OUTPUT \"a.ppm\"");
-    place.run("scene.txt", 3, "expected a file name without quotes");
+    let place = with_scene("OUTPUT \"a.ppm\"");
+    place.exits("scene.txt", 3, "expected a file name without quotes");
     assert_eq!(place.files(), ["scene.txt"]);
-    let place = Folder::with_scene("OUTPUT bob's.ppm");
-    place.run("render --device cpu scene.txt", 0, "bob's.ppm");
+    let place = with_scene("OUTPUT bob's.ppm");
+    place.exits("render --device cpu scene.txt", 0, "bob's.ppm");
 }
 
 /// A link to a file that is yet to be made: it is made like any other, and the link stays.
 #[cfg(unix)]
 #[test]
 fn a_link_to_nothing_yet_is_followed() {
-    let place = Folder::with_scene("");
+    let place = with_scene("");
     fs::create_dir(place.path("folder")).unwrap();
     std::os::unix::fs::symlink("folder/new.ppm", place.path("link.ppm")).unwrap();
-    place.run("render --device cpu -o link.ppm --stats-json folder/new.ppm scene.txt", 6, "would overwrite");
+    place.exits("render --device cpu -o link.ppm --stats-json folder/new.ppm scene.txt", 6, "would overwrite");
     // Too large to be complete: nothing of it stays behind the link either.
     let limited = "ulimit -f 1; exec \"$0\" render --device cpu --res 400x400 -o link.ppm scene.txt";
     let mut shell = Command::new("sh");
-    shell.args(["-c", limited, env!("CARGO_BIN_EXE_trueray")]).current_dir(place.0.path());
+    shell.args(["-c", limited, env!("CARGO_BIN_EXE_trueray")]).current_dir(place.folder());
     assert_eq!(shell.output().unwrap().status.code(), Some(6));
     assert_eq!(fs::read_dir(place.path("folder")).unwrap().count(), 0);
-    place.run("render --device cpu -o link.ppm scene.txt", 0, "");
+    place.exits("render --device cpu -o link.ppm scene.txt", 0, "");
     assert!(place.read("folder/new.ppm").starts_with(b"P6\n16 8"));
     assert!(fs::symlink_metadata(place.path("link.ppm")).unwrap().is_symlink());
 }
@@ -280,9 +234,9 @@ fn a_link_to_nothing_yet_is_followed() {
 fn a_picture_that_cannot_fit_is_not_begun() {
     for (output, format) in [("big.ppm", "p6"), ("big.ppm", "p3"), ("big.png", "png")] {
         let place = Folder::new();
-        place.scene("scene.txt", &format!("RES 16777216 16777216\nOUTPUT {output}"));
+        write_scene(&place, "scene.txt", &format!("RES 16777216 16777216\nOUTPUT {output}"));
         let start = Instant::now();
-        place.run(&format!("render --device cpu --format {format} scene.txt"), 6, "B are free");
+        place.exits(&format!("render --device cpu --format {format} scene.txt"), 6, "B are free");
         assert!(start.elapsed() < Duration::from_secs(20));
         assert_eq!(place.files(), ["scene.txt"]);
     }
@@ -292,7 +246,7 @@ fn a_picture_that_cannot_fit_is_not_begun() {
 #[cfg(unix)]
 #[test]
 fn a_limit_of_file_size_is_an_error_and_leaves_the_old_file() {
-    let place = Folder::with_scene("OUTPUT out.ppm");
+    let place = with_scene("OUTPUT out.ppm");
     place.write("out.ppm", OLD);
     place.write("stats.json", "old");
     for (arguments, name) in [
@@ -304,7 +258,7 @@ fn a_limit_of_file_size_is_an_error_and_leaves_the_old_file() {
         let limited = format!("ulimit -f 1; exec \"$0\" {arguments}");
         let output = Command::new("sh")
             .args(["-c", &limited, env!("CARGO_BIN_EXE_trueray")])
-            .current_dir(place.0.path())
+            .current_dir(place.folder())
             .output()
             .unwrap();
         let stderr = String::from_utf8_lossy(&output.stderr);
@@ -341,7 +295,7 @@ fn interrupts_leave_the_old_picture_or_the_new_one_and_nothing_else() {
 
     let count = std::env::var("TRUERAY_INTERRUPTS").ok().and_then(|count| count.parse().ok()).unwrap_or(24);
     let place = Folder::new();
-    place.scene("scene.txt", "RES 1500 1500\nOUTPUT out.ppm");
+    write_scene(&place, "scene.txt", "RES 1500 1500\nOUTPUT out.ppm");
     let command = || place.command("render -q --device cpu scene.txt");
     let start = Instant::now();
     assert!(command().status().unwrap().success());
@@ -378,7 +332,7 @@ fn interrupts_leave_the_old_picture_or_the_new_one_and_nothing_else() {
 #[test]
 fn what_a_kill_leaves_goes_with_the_next_run() {
     let place = Folder::new();
-    place.scene("scene.txt", "RES 6000 6000\nOUTPUT out.ppm");
+    write_scene(&place, "scene.txt", "RES 6000 6000\nOUTPUT out.ppm");
     place.write("out.ppm", OLD);
     let left = |place: &Folder| place.files().iter().filter(|name| name.contains(".trueray-")).count();
     let started = |others: usize| {
@@ -411,7 +365,7 @@ fn what_a_kill_leaves_goes_with_the_next_run() {
 
     send("KILL", &started(0));
     sleep(Duration::from_millis(200));
-    place.run("render -q --device cpu --res 8x8 scene.txt", 0, "");
+    place.exits("render -q --device cpu --res 8x8 scene.txt", 0, "");
     assert_eq!(place.files(), ["out.ppm", "scene.txt"]);
     assert_ne!(place.read("out.ppm"), OLD.as_bytes());
 }
@@ -421,10 +375,10 @@ fn what_a_kill_leaves_goes_with_the_next_run() {
 #[test]
 fn ignored_signals_stay_ignored() {
     let place = Folder::new();
-    place.scene("scene.txt", "RES 2000 2000\nOUTPUT out.ppm");
+    write_scene(&place, "scene.txt", "RES 2000 2000\nOUTPUT out.ppm");
     let command = "trap '' HUP; exec \"$0\" render -q --device cpu scene.txt";
     let mut shell = Command::new("sh");
-    shell.args(["-c", command, env!("CARGO_BIN_EXE_trueray")]).current_dir(place.0.path());
+    shell.args(["-c", command, env!("CARGO_BIN_EXE_trueray")]).current_dir(place.folder());
     let mut child = shell.spawn().unwrap();
     sleep(Duration::from_millis(100));
     send("HUP", &child);
@@ -442,13 +396,13 @@ fn events(stderr: &[u8]) -> Vec<serde_json::Value> {
 
 #[test]
 fn progress_tells_percent_and_time_left_and_ends_with_an_event() {
-    let place = Folder::with_scene("OUTPUT out.ppm");
-    let output = place.run("render --device cpu --progress json scene.txt", 0, "");
+    let place = with_scene("OUTPUT out.ppm");
+    let output = place.exits("render --device cpu --progress json scene.txt", 0, "");
     let few = events(&output.stderr);
     assert_eq!(few.len(), 1);
     assert_eq!((&few[0]["percent"], &few[0]["finished"]), (&100.0.into(), &true.into()));
 
-    let output = place.run("render --device cpu --progress json --res 1500x1500 --spp 25 scene.txt", 0, "");
+    let output = place.exits("render --device cpu --progress json --res 1500x1500 --spp 25 scene.txt", 0, "");
     let many = events(&output.stderr);
     let (last, before) = many.split_last().unwrap();
     assert_eq!(
@@ -461,10 +415,10 @@ fn progress_tells_percent_and_time_left_and_ends_with_an_event() {
     assert!(percents.is_sorted() && percents.len() as f64 >= seconds / 3.0 - 1.0, "{percents:?} in {seconds} s");
     assert!(before.iter().all(|event| event["seconds_left"].as_f64().is_some() && event["finished"] == false));
 
-    let output = place.run("render --device cpu --progress lines scene.txt", 0, "scene.txt: 100 %");
+    let output = place.exits("render --device cpu --progress lines scene.txt", 0, "scene.txt: 100 %");
     assert!(events(&output.stderr).is_empty());
     for arguments in ["render -q --device cpu --progress json scene.txt", "render --device cpu scene.txt"] {
-        assert!(events(&place.run(arguments, 0, "").stderr).is_empty(), "{arguments}");
+        assert!(events(&place.exits(arguments, 0, "").stderr).is_empty(), "{arguments}");
     }
 }
 
@@ -488,7 +442,7 @@ fn interrupted(place: &Folder, arguments: &str, ready: impl Fn(&Path) -> bool) -
 #[cfg(unix)]
 #[test]
 fn interrupted_measurements_are_written() {
-    let place = Folder::with_scene("OUTPUT out.ppm");
+    let place = with_scene("OUTPUT out.ppm");
     // A table begins when the first scene is done.
     let lines = |least: usize| move |printed: &Path| fs::read_to_string(printed).unwrap().lines().count() >= least;
     let bench = "bench --device cpu --families classic,spheres --res 16x16 --runs 20 --report b.html --csv b.csv";
@@ -498,7 +452,7 @@ fn interrupted_measurements_are_written() {
     assert!(fs::read_to_string(place.path("b.html")).unwrap().ends_with("</html>"));
 
     // The first scene is done, the second takes for ever.
-    place.scene("large.txt", "RES 3000 3000");
+    write_scene(&place, "large.txt", "RES 3000 3000");
     let study = "study --device cpu scene.txt large.txt --runs 3 --spp-list 1 --depths 0 --report s.html --json s.json";
     let output = interrupted(&place, study, lines(10));
     assert!(String::from_utf8_lossy(&output.stderr).contains("interrupted"));
@@ -511,9 +465,9 @@ fn interrupted_measurements_are_written() {
     for folder in ["scenes", "theirs"] {
         fs::create_dir(place.path(folder)).unwrap();
     }
-    place.scene("scenes/a.txt", "RES 16 8");
-    place.scene("scenes/b.txt", "RES 9000 9000");
-    place.run("render -q --device cpu scenes/a.txt -o a.ppm", 0, "");
+    write_scene(&place, "scenes/a.txt", "RES 16 8");
+    write_scene(&place, "scenes/b.txt", "RES 9000 9000");
+    place.exits("render -q --device cpu scenes/a.txt -o a.ppm", 0, "");
     for student in ["ann", "bob"] {
         fs::create_dir(place.path(&format!("theirs/{student}"))).unwrap();
         fs::copy(place.path("a.ppm"), place.path(&format!("theirs/{student}/a.ppm"))).unwrap();
@@ -528,8 +482,11 @@ fn interrupted_measurements_are_written() {
     assert!(fs::read_to_string(place.path("g.csv")).unwrap().lines().count() >= 2);
 
     if gpu("interrupted_measurements_are_written").is_some() {
-        let json =
-            place.run("stress --count 64 --class far --precision fast --json --progress json", 0, "\"finished\":true");
+        let json = place.exits(
+            "stress --count 64 --class far --precision fast --json --progress json",
+            0,
+            "\"finished\":true",
+        );
         let json: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
         assert!(json.get("interrupted").is_none());
         interrupted(&place, "stress --count 20000 --precision fast", lines(4));

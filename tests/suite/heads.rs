@@ -137,6 +137,7 @@ fn modules() -> Vec<Module> {
         (Secondary::Both, Tables::Stored, Slots::Tiles, in_turn, None),
         (Secondary::Both, Tables::Buffers, Slots::Tiles, in_turn, None),
         (Secondary::Both, Tables::Stored, Slots::Tiles, Schedule::AtOnce, Some(std::num::NonZeroU32::MIN)),
+        (Secondary::Grid, Tables::Stored, Slots::List, Schedule::First, None),
     ];
     let pictures = kernels.iter().flat_map(|&kernel| {
         ways.map(|(secondary, tables, slots, schedule, refraction)| {

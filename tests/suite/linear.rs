@@ -1,8 +1,5 @@
 //! Colours that are no 8-bit levels: what the files have of the reference and of the device, at every tier; alpha; what is refused.
 
-use std::path::PathBuf;
-use std::process::{Command, Output};
-
 use glam::DVec3;
 use trueray::area::Area;
 use trueray::cpu::Reference;
@@ -15,7 +12,7 @@ use trueray::scene::Scene;
 use trueray::settings::{Quantize, Settings};
 use trueray::verify::Verify;
 
-use crate::support::{gpu, root, scene, scene_of};
+use crate::support::{Folder, gpu, root, scene, scene_of};
 
 /// Bright enough for colours above 1, a mirror, an ellipsoid and a background.
 const SCENE: &str = "SPHERE a 0 0 -6 2 2 2 0.9 0.2 0.1 0.3 0.7 0.3 0.4 20\nSPHERE b 2 1 -5 0.5 1 0.5 0.1 0.8 0.3 0.3 0.6 0.2 0 10\n\
@@ -26,67 +23,49 @@ fn small() -> Scene {
     Scene { width: SIZE.0, height: SIZE.1, ..scene_of(SCENE) }
 }
 
-/// A folder with the scene in `scene.txt`, where the program runs.
-struct Folder(tempfile::TempDir);
+/// With the scene in `scene.txt`.
+fn folder() -> Folder {
+    Folder::with_scene(&small().to_string())
+}
 
-impl Folder {
-    fn new() -> Self {
-        let folder = Self(tempfile::tempdir().unwrap());
-        std::fs::write(folder.path("scene.txt"), small().to_string()).unwrap();
-        folder
-    }
+#[track_caller]
+fn render(place: &Folder, arguments: &str, code: i32, message: &str) {
+    place.exits(&format!("render {arguments}"), code, message);
+}
 
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
+/// The numbers of a PFM file, the first row first.
+fn pfm(place: &Folder, name: &str) -> Vec<[f32; 3]> {
+    let file = std::fs::read(place.path(name)).unwrap();
+    let head = format!("PF\n{} {}\n-1.0\n", SIZE.0, SIZE.1);
+    let numbers = file.strip_prefix(head.as_bytes()).unwrap().as_chunks::<4>().0;
+    let pixels: Vec<_> = numbers.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();
+    let rows = pixels.as_chunks::<3>().0.chunks(SIZE.0 as usize).rev();
+    rows.flatten().copied().collect()
+}
 
-    fn run(&self, arguments: &str) -> Output {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_trueray"));
-        command.args(arguments.split_whitespace()).current_dir(self.0.path()).output().unwrap()
-    }
+/// The channels of an EXR file by name.
+fn exr(place: &Folder, name: &str) -> Vec<(String, Vec<f32>)> {
+    use exr::prelude::*;
+    let file = read().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes();
+    let image = file.from_file(place.path(name)).unwrap();
+    let layer = &image.layer_data[0];
+    assert_eq!((layer.size.0 as u32, layer.size.1 as u32), SIZE);
+    let channels = layer.channel_data.list.iter();
+    channels.map(|it| (it.name.to_string(), it.sample_data.values_as_f32().collect())).collect()
+}
 
-    #[track_caller]
-    fn render(&self, arguments: &str, code: i32, message: &str) {
-        let output = self.run(&format!("render {arguments}"));
-        let said = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(code), "{arguments}: {said}");
-        assert!(said.contains(message), "{arguments}: expected '{message}' in:\n{said}");
-    }
-
-    /// The numbers of a PFM file, the first row first.
-    fn pfm(&self, name: &str) -> Vec<[f32; 3]> {
-        let file = std::fs::read(self.path(name)).unwrap();
-        let head = format!("PF\n{} {}\n-1.0\n", SIZE.0, SIZE.1);
-        let numbers = file.strip_prefix(head.as_bytes()).unwrap().as_chunks::<4>().0;
-        let pixels: Vec<_> = numbers.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();
-        let rows = pixels.as_chunks::<3>().0.chunks(SIZE.0 as usize).rev();
-        rows.flatten().copied().collect()
-    }
-
-    /// The channels of an EXR file by name.
-    fn exr(&self, name: &str) -> Vec<(String, Vec<f32>)> {
-        use exr::prelude::*;
-        let file = read().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes();
-        let image = file.from_file(self.path(name)).unwrap();
-        let layer = &image.layer_data[0];
-        assert_eq!((layer.size.0 as u32, layer.size.1 as u32), SIZE);
-        let channels = layer.channel_data.list.iter();
-        channels.map(|it| (it.name.to_string(), it.sample_data.values_as_f32().collect())).collect()
-    }
-
-    /// Bits a channel, channels and samples of a PNG file.
-    fn png(&self, name: &str) -> (u8, usize, Vec<u16>) {
-        let file = std::io::BufReader::new(std::fs::File::open(self.path(name)).unwrap());
-        let mut reader = png::Decoder::new(file).read_info().unwrap();
-        let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
-        let info = reader.next_frame(&mut bytes).unwrap();
-        assert_eq!((info.width, info.height), SIZE);
-        let samples = match info.bit_depth {
-            png::BitDepth::Sixteen => bytes.as_chunks().0.iter().map(|&pair| u16::from_be_bytes(pair)).collect(),
-            _ => bytes.iter().map(|&byte| byte.into()).collect(),
-        };
-        (info.bit_depth as u8, info.color_type.samples(), samples)
-    }
+/// Bits a channel, channels and samples of a PNG file.
+fn png(place: &Folder, name: &str) -> (u8, usize, Vec<u16>) {
+    let file = std::io::BufReader::new(std::fs::File::open(place.path(name)).unwrap());
+    let mut reader = png::Decoder::new(file).read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut bytes).unwrap();
+    assert_eq!((info.width, info.height), SIZE);
+    let samples = match info.bit_depth {
+        png::BitDepth::Sixteen => bytes.as_chunks().0.iter().map(|&pair| u16::from_be_bytes(pair)).collect(),
+        _ => bytes.iter().map(|&byte| byte.into()).collect(),
+    };
+    (info.bit_depth as u8, info.color_type.samples(), samples)
 }
 
 /// All pixels of a picture: levels and colours.
@@ -122,15 +101,15 @@ fn reference(scene: &Scene, settings: &Settings) -> Vec<Linear> {
 
 #[test]
 fn files_have_the_colours_of_the_reference() {
-    let place = Folder::new();
+    let place = folder();
     for (spp, option) in [(1, ""), (2, "--spp 4")] {
         let expected: Vec<_> =
             reference(&small(), &settings(spp)).iter().map(|pixel| pixel.color.as_vec3().to_array()).collect();
         assert!(expected.iter().flatten().any(|&c| c > 1.2), "nothing is clamped");
-        place.render(&format!("-q --device cpu {option} scene.txt -o a.pfm"), 0, "");
-        assert_eq!(place.pfm("a.pfm"), expected);
-        place.render(&format!("-q --device cpu {option} scene.txt --format exr -o a.picture"), 0, "");
-        let channels = place.exr("a.picture");
+        render(&place, &format!("-q --device cpu {option} scene.txt -o a.pfm"), 0, "");
+        assert_eq!(pfm(&place, "a.pfm"), expected);
+        render(&place, &format!("-q --device cpu {option} scene.txt --format exr -o a.picture"), 0, "");
+        let channels = exr(&place, "a.picture");
         assert_eq!(channels.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), ["B", "G", "R"]);
         for (channel, (_, values)) in channels.iter().rev().enumerate() {
             assert!(values.iter().zip(&expected).all(|(value, pixel)| *value == pixel[channel]), "channel {channel}");
@@ -147,29 +126,29 @@ fn sixteen_bits_follow_the_rule_of_eight() {
     for (c, level) in [(0.0, 0), (-1.0, 0), (f64::NAN, 0), (1.0, 65535), (7.0, 65535)] {
         assert_eq!(rules.map(|rule| levels(rule, c)), [level; 3], "{c}");
     }
-    let place = Folder::new();
+    let place = folder();
     for quantize in ["truncate", "round"] {
         let rule = if quantize == "round" { Quantize::Round } else { Quantize::Truncate };
-        place.render(&format!("-q --device cpu --quantize {quantize} --bits 16 scene.txt -o a.png"), 0, "");
+        render(&place, &format!("-q --device cpu --quantize {quantize} --bits 16 scene.txt -o a.png"), 0, "");
         let expected: Vec<_> =
             reference(&small(), &settings(1)).iter().flat_map(|pixel| rule.levels16(pixel.color)).collect();
-        assert_eq!(place.png("a.png"), (16, 3, expected));
+        assert_eq!(png(&place, "a.png"), (16, 3, expected));
     }
     // 8 bits are the picture as ever.
-    place.render("-q --device cpu --bits 8 scene.txt -o b.png", 0, "");
-    place.render("-q --device cpu scene.txt -o c.png", 0, "");
+    render(&place, "-q --device cpu --bits 8 scene.txt -o b.png", 0, "");
+    render(&place, "-q --device cpu scene.txt -o c.png", 0, "");
     assert_eq!(std::fs::read(place.path("b.png")).unwrap(), std::fs::read(place.path("c.png")).unwrap());
 }
 
 #[test]
 fn frames_are_the_files_of_single_runs() {
-    let place = Folder::new();
+    let place = folder();
     std::fs::write(place.path("views.csv"), "eye_x,width\n,\n0.5,17\n").unwrap();
     for (options, ending) in [("--alpha --spp 4", "exr"), ("", "pfm"), ("--bits 16", "png")] {
         let options = format!("-q --device cpu {options} scene.txt -o");
-        place.render(&format!("--views views.csv {options} f%d.{ending}"), 0, "");
-        place.render(&format!("{options} one.{ending}"), 0, "");
-        place.render(&format!("--eye 0.5,0,0 --res 17x20 {options} two.{ending}"), 0, "");
+        render(&place, &format!("--views views.csv {options} f%d.{ending}"), 0, "");
+        render(&place, &format!("{options} one.{ending}"), 0, "");
+        render(&place, &format!("--eye 0.5,0,0 --res 17x20 {options} two.{ending}"), 0, "");
         let file = |name: &str| std::fs::read(place.path(&format!("{name}.{ending}"))).unwrap();
         assert!(file("f1") == file("one") && file("f2") == file("two"), "{ending}");
     }
@@ -205,34 +184,34 @@ fn coverage_is_the_part_of_the_samples_that_hit() {
 
 #[test]
 fn alpha_is_straight_in_png_and_premultiplied_in_exr() {
-    let place = Folder::new();
+    let place = folder();
     let (linear, background) = (reference(&small(), &settings(2)), DVec3::new(0.1, 0.1, 0.2));
     assert!(linear.iter().any(|pixel| pixel.coverage > 0.0 && pixel.coverage < 1.0));
     let (rule, round) = (Quantize::Truncate, |x: f64| x.round() as u16);
-    place.render("-q --device cpu --spp 4 --alpha scene.txt -o a.png", 0, "");
-    place.render("-q --device cpu --spp 4 --alpha --bits 16 scene.txt -o b.png", 0, "");
-    place.render("-q --device cpu --spp 4 --alpha scene.txt -o a.exr", 0, "");
-    place.render("-q --device cpu --spp 4 scene.txt -o plain.png", 0, "");
+    render(&place, "-q --device cpu --spp 4 --alpha scene.txt -o a.png", 0, "");
+    render(&place, "-q --device cpu --spp 4 --alpha --bits 16 scene.txt -o b.png", 0, "");
+    render(&place, "-q --device cpu --spp 4 --alpha scene.txt -o a.exr", 0, "");
+    render(&place, "-q --device cpu --spp 4 scene.txt -o plain.png", 0, "");
     let eight = linear.iter().flat_map(|pixel| {
         let [r, g, b] = rule.levels(pixel.straight(background)).map(u16::from);
         [r, g, b, round(255.0 * pixel.coverage)]
     });
-    assert_eq!(place.png("a.png"), (8, 4, eight.collect()));
+    assert_eq!(png(&place, "a.png"), (8, 4, eight.collect()));
     let sixteen = linear.iter().flat_map(|pixel| {
         let [r, g, b] = rule.levels16(pixel.straight(background));
         [r, g, b, round(65535.0 * pixel.coverage)]
     });
-    assert_eq!(place.png("b.png"), (16, 4, sixteen.collect()));
+    assert_eq!(png(&place, "b.png"), (16, 4, sixteen.collect()));
     // What is covered is as it is without alpha, and where nothing is there is nothing.
     let plain = Picture::read(place.path("plain.png")).unwrap();
-    for (pixel, plain) in place.png("a.png").2.as_chunks::<4>().0.iter().zip(plain.pixels()) {
+    for (pixel, plain) in png(&place, "a.png").2.as_chunks::<4>().0.iter().zip(plain.pixels()) {
         match pixel {
             [r, g, b, 255] => assert_eq!([*r, *g, *b], plain.map(u16::from)),
             [_, _, _, 0] => assert_eq!(*pixel, [0; 4]),
             _ => {}
         }
     }
-    let channels = place.exr("a.exr");
+    let channels = exr(&place, "a.exr");
     assert_eq!(channels.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), ["A", "B", "G", "R"]);
     for (at, pixel) in linear.iter().enumerate() {
         let [alpha, blue, green, red] = [0, 1, 2, 3].map(|channel: usize| f64::from(channels[channel].1[at]));
@@ -295,18 +274,18 @@ fn the_program_writes_the_devices_colours() {
     if gpu("linear::the_program_writes_the_devices_colours").is_none() {
         return;
     }
-    let place = Folder::new();
-    place.render("--device gpu --precision fast --alpha --verify all scene.txt -o a.exr", 0, "");
-    let (channels, expected) = (place.exr("a.exr"), reference(&small(), &settings(1)));
+    let place = folder();
+    render(&place, "--device gpu --precision fast --alpha --verify all scene.txt -o a.exr", 0, "");
+    let (channels, expected) = (exr(&place, "a.exr"), reference(&small(), &settings(1)));
     let background = DVec3::new(0.1, 0.1, 0.2);
     let close = expected.iter().enumerate().filter(|&(at, pixel)| {
         let [alpha, b, g, r] = [0, 1, 2, 3].map(|channel: usize| f64::from(channels[channel].1[at]));
         alpha == pixel.coverage && (DVec3::new(r, g, b) - pixel.premultiplied(background)).length() < 1e-4
     });
     assert!(close.count() + 3 >= expected.len());
-    place.render("-q --device gpu --precision double --bits 16 scene.txt -o a.png", 0, "");
+    render(&place, "-q --device gpu --precision double --bits 16 scene.txt -o a.png", 0, "");
     let levels = expected.iter().flat_map(|pixel| Quantize::Truncate.levels16(pixel.color));
-    let same = place.png("a.png").2.into_iter().zip(levels).filter(|(a, b)| a == b).count();
+    let same = png(&place, "a.png").2.into_iter().zip(levels).filter(|(a, b)| a == b).count();
     assert!(same + 3 >= 3 * expected.len(), "{same}");
 }
 
@@ -327,7 +306,7 @@ fn certified_pictures_have_no_colours() {
 
 #[test]
 fn what_no_file_has_is_refused_before_anything_is_rendered() {
-    let place = Folder::new();
+    let place = folder();
     for (arguments, message) in [
         ("--bits 12 scene.txt -o a.png", "expected 8 or 16"),
         ("--bits 16 scene.txt -o a.ppm", "--bits 16 is for PNG"),
@@ -344,24 +323,24 @@ fn what_no_file_has_is_refused_before_anything_is_rendered() {
         ("--res 8192x8192 scene.txt -o a.exr", "33554432 pixels at the most"),
         ("scene.txt -o a.tiff", "--format p6, p3, png, pfm or exr writes that"),
     ] {
-        place.render(&format!("--device cpu {arguments}"), 2, message);
-        assert_eq!(std::fs::read_dir(place.0.path()).unwrap().count(), 1, "{arguments}");
+        render(&place, &format!("--device cpu {arguments}"), 2, message);
+        assert_eq!(std::fs::read_dir(place.folder()).unwrap().count(), 1, "{arguments}");
     }
 }
 
 /// OUTPUT may name such files, and replaces its own.
 #[test]
 fn output_may_name_files_of_colours() {
-    let place = Folder::new();
+    let place = folder();
     for name in ["own.exr", "own.pfm"] {
         let scene = Scene { output: Some(name.into()), ..small() };
         std::fs::write(place.path("scene.txt"), scene.to_string()).unwrap();
         for _ in 0..2 {
-            place.render("-q --device cpu scene.txt", 0, "");
+            render(&place, "-q --device cpu scene.txt", 0, "");
         }
         assert!(place.path(name).exists());
         assert!(place.run("check scene.txt").status.success());
     }
     std::fs::write(place.path("own.pfm"), "notes").unwrap();
-    place.render("-q --device cpu scene.txt", 6, "does not begin like a PPM, PNG, PFM or EXR picture");
+    render(&place, "-q --device cpu scene.txt", 6, "does not begin like a PPM, PNG, PFM or EXR picture");
 }

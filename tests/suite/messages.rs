@@ -1,49 +1,12 @@
 //! What the program says in words: of files that are no scenes, of commands mistyped, of names that would fool a terminal.
 
 use std::io::Write as _;
-use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-use tempfile::TempDir;
-
-use crate::support::gpu;
+use crate::support::{Folder, gpu};
 
 const SCENE: &str = "NEAR 1\nLEFT -1\nRIGHT 1\nBOTTOM -1\nTOP 1\nRES 16 16\nSPHERE s 0 0 -5.5 1.9 2 2 1 0.5 0.3 1 0 0 0 1\n\
                      AMBIENT 0.9 0.9 0.9\nBACK 0 0 1\nOUTPUT out.ppm\n";
-
-/// A folder in which the program runs.
-struct Folder(TempDir);
-
-impl Folder {
-    fn new(files: &[(&str, &[u8])]) -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        for (name, contents) in files {
-            std::fs::write(folder.path().join(name), contents).unwrap();
-        }
-        Self(folder)
-    }
-
-    fn path(&self) -> &Path {
-        self.0.path()
-    }
-
-    fn command(&self, arguments: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_trueray"));
-        command.args(arguments).current_dir(self.path()).stdin(Stdio::null());
-        command
-    }
-
-    fn run(&self, arguments: &str) -> Output {
-        self.command(&arguments.split_whitespace().collect::<Vec<_>>()).output().unwrap()
-    }
-
-    fn files(&self) -> Vec<String> {
-        let entries = std::fs::read_dir(self.path()).unwrap();
-        let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-        names.sort();
-        names
-    }
-}
 
 fn said(output: &Output) -> String {
     String::from_utf8_lossy(&[&output.stdout[..], &output.stderr].concat()).into_owned()
@@ -74,8 +37,8 @@ fn what_is_no_scene_is_named_in_one_line() {
         ("a.zip", b"PK\x03\x04", "a ZIP archive or an office document"),
         ("a.bin", b"NEAR 1\n\0\0", "binary data"),
     ];
-    let place = Folder::new(&kinds.map(|(name, contents, _)| (name, contents)));
-    std::fs::create_dir(place.path().join("folder")).unwrap();
+    let place = Folder::with(&kinds.map(|(name, contents, _)| (name, contents)));
+    std::fs::create_dir(place.folder().join("folder")).unwrap();
     for (name, _, kind) in kinds {
         for command in ["", "check ", "render --device cpu "] {
             let output = place.run(&format!("{command}{name}"));
@@ -89,14 +52,14 @@ fn what_is_no_scene_is_named_in_one_line() {
     assert_eq!(json(&unread)[0]["unread"], "a.png: this is a PNG picture, not a scene");
     // Text that begins alike is only a scene with an error.
     for text in ["P3X 1\n", "BMX 1\n", "MZ1\n"] {
-        let place = Folder::new(&[("scene.txt", text.as_bytes())]);
+        let place = Folder::with(&[("scene.txt", text.as_bytes())]);
         assert_exit(&place.run("check scene.txt"), 3, "unknown keyword");
     }
 }
 
 #[test]
 fn a_mistyped_command_renders_nothing() {
-    let place = Folder::new(&[("scene.txt", SCENE.as_bytes()), ("rendr", SCENE.as_bytes())]);
+    let place = Folder::with(&[("scene.txt", SCENE.as_bytes()), ("rendr", SCENE.as_bytes())]);
     for (word, command) in
         [("chek", "check"), ("Check", "check"), ("comapre", "compare"), ("rneder", "render"), ("stres", "stress")]
     {
@@ -118,7 +81,7 @@ fn a_mistyped_command_renders_nothing() {
 #[test]
 fn doubts_are_warnings_of_check_and_render() {
     let behind = SCENE.replace("0 0 -5.5", "0 0 5");
-    let place = Folder::new(&[("scene.txt", SCENE.as_bytes()), ("behind.txt", behind.as_bytes())]);
+    let place = Folder::with(&[("scene.txt", SCENE.as_bytes()), ("behind.txt", behind.as_bytes())]);
     let warning = "trueray: behind.txt: warning: nothing can be seen: every sphere is behind the eye";
     let output = place.run("check behind.txt");
     assert_exit(&output, 0, warning);
@@ -138,17 +101,17 @@ fn doubts_are_warnings_of_check_and_render() {
 
 #[test]
 fn check_doubts_a_name_that_render_refuses() {
-    let place = Folder::new(&[("scene.txt", SCENE.replace("out.ppm", ".hidden.ppm").as_bytes())]);
+    let place = Folder::with(&[("scene.txt", SCENE.replace("out.ppm", ".hidden.ppm").as_bytes())]);
     let why = "OUTPUT would write `.hidden.ppm`, a hidden file";
     assert_exit(&place.run("check scene.txt"), 0, &format!("warning: without -o there is no picture: {why}\n"));
     assert_exit(&place.run("render --device cpu scene.txt"), 6, why);
-    std::fs::write(place.path().join("scene.txt"), SCENE.replace("out.ppm", "out.jpg")).unwrap();
+    std::fs::write(place.folder().join("scene.txt"), SCENE.replace("out.ppm", "out.jpg")).unwrap();
     let why = "warning: without -o there is no picture: out.jpg: pictures are written as .ppm, .png, .pfm or .exr";
     assert_exit(&place.run("check scene.txt"), 0, why);
     // File systems take 255 bytes, however many letters these are.
     for (letters, fits) in [(250, true), (252, false)] {
         let name = format!("ä{}.ppm", "n".repeat(letters - 1));
-        std::fs::write(place.path().join("scene.txt"), SCENE.replace("out.ppm", &name)).unwrap();
+        std::fs::write(place.folder().join("scene.txt"), SCENE.replace("out.ppm", &name)).unwrap();
         let why = if fits { "" } else { "its name has 257 bytes, and file systems take 255" };
         let checked = place.run("check scene.txt");
         assert_exit(&checked, 0, why);
@@ -159,11 +122,11 @@ fn check_doubts_a_name_that_render_refuses() {
 
 #[test]
 fn a_comparison_says_why_it_looks_at_no_device() {
-    let place = Folder::new(&[("scene.txt", SCENE.as_bytes())]);
+    let place = Folder::with(&[("scene.txt", SCENE.as_bytes())]);
     assert_exit(&place.run("render --device cpu scene.txt"), 0, "");
     let compare = |device| {
-        let mut command = place.command(&["compare", "--scene", "scene.txt", "--device", device, "out.ppm"]);
-        command.env("VK_DRIVER_FILES", place.path().join("none.json")).output().unwrap()
+        let mut command = place.command_of(["compare", "--scene", "scene.txt", "--device", device, "out.ppm"]);
+        command.env("VK_DRIVER_FILES", place.folder().join("none.json")).output().unwrap()
     };
     assert_exit(&compare("auto"), 0, "judged as a picture of hardware, since no device can be used here: no Vulkan");
     assert!(!said(&compare("cpu")).contains("Vulkan"));
@@ -171,9 +134,9 @@ fn a_comparison_says_why_it_looks_at_no_device() {
 
 #[test]
 fn patience_is_a_number_of_seconds() {
-    let place = Folder::new(&[("scene.txt", SCENE.as_bytes())]);
+    let place = Folder::with(&[("scene.txt", SCENE.as_bytes())]);
     for patience in ["soon", "-1", "0", ""] {
-        let output = place.command(&["check", "scene.txt"]).env("TRUERAY_PATIENCE", patience).output().unwrap();
+        let output = place.command_of(["check", "scene.txt"]).env("TRUERAY_PATIENCE", patience).output().unwrap();
         assert_exit(&output, 2, "TRUERAY_PATIENCE is ");
     }
 }
@@ -196,11 +159,11 @@ fn no_name_is_obeyed_by_a_terminal() {
         |sphere: &str| SCENE.replace("SPHERE s", &format!("SPHERE {sphere}")).replace("1 0 0 0 1\n", "1 1 1 1 1\n");
     let light = format!("LIGHT {HOSTILE} 1 2 3 1 1 1\n");
     let scene = named(HOSTILE) + &light + &format!("SPHERE {HOSTILE} 0 1 -4 1 1 1 1 1 1 0 1 1 1 1\n");
-    let place = Folder::new(&[("scene.txt", scene.as_bytes()), ("good.txt", SCENE.as_bytes())]);
+    let place = Folder::with(&[("scene.txt", scene.as_bytes()), ("good.txt", SCENE.as_bytes())]);
     let file = format!("{HOSTILE}.txt");
-    std::fs::write(place.path().join(&file), &scene).unwrap();
+    std::fs::write(place.folder().join(&file), &scene).unwrap();
     let picture = format!("{HOSTILE}.ppm");
-    let run = |arguments: &[&str]| place.command(arguments).output().unwrap();
+    let run = |arguments: &[&str]| place.command_of(arguments).output().unwrap();
     for arguments in [
         &["check", "scene.txt"][..],
         &["check", &file],
@@ -223,7 +186,7 @@ fn no_name_is_obeyed_by_a_terminal() {
 
 #[test]
 fn colour_is_a_choice() {
-    let place = Folder::new(&[("bad.txt", b"NEAR x\n")]);
+    let place = Folder::with(&[("bad.txt", b"NEAR x\n")]);
     let is_coloured = |output: Output| {
         assert_exit(&output, 3, "");
         said(&output).contains('\u{1b}')
@@ -236,7 +199,7 @@ fn colour_is_a_choice() {
     assert!(!is_coloured(place.run("--color never check bad.txt")));
     assert_exit(&place.run("--color sometimes bad.txt"), 2, "sometimes");
     assert!(!is_coloured(place.run("check --color never bad.txt")));
-    let coloured = place.command(&["check", "--color", "always", "bad.txt"]).env("NO_COLOR", "1").output().unwrap();
+    let coloured = place.command_of(["check", "--color", "always", "bad.txt"]).env("NO_COLOR", "1").output().unwrap();
     assert!(is_coloured(coloured), "what is asked for outweighs the environment");
     assert_exit(&place.run("check --color sometimes bad.txt"), 2, "");
     assert!(said(&place.run("check --color always")).contains('\u{1b}'), "clap's own errors");
@@ -246,11 +209,11 @@ fn colour_is_a_choice() {
 #[cfg(target_os = "linux")]
 #[test]
 fn colour_needs_a_terminal_that_wants_it() {
-    let place = Folder::new(&[("bad.txt", b"NEAR x\n")]);
+    let place = Folder::with(&[("bad.txt", b"NEAR x\n")]);
     let run = |variable: &str, value: &str| {
         let line = format!("{} check bad.txt", env!("CARGO_BIN_EXE_trueray"));
         let mut command = Command::new("script");
-        command.args(["-qec", &line, "/dev/null"]).current_dir(place.path()).stdin(Stdio::null());
+        command.args(["-qec", &line, "/dev/null"]).current_dir(place.folder()).stdin(Stdio::null());
         command.env_remove("NO_COLOR").env("TERM", "xterm").env(variable, value);
         command.output().ok().map(|output| said(&output).contains('\u{1b}'))
     };
@@ -266,14 +229,14 @@ fn colour_needs_a_terminal_that_wants_it() {
 
 #[test]
 fn compare_reads_standard_input() {
-    let place = Folder::new(&[
+    let place = Folder::with(&[
         ("a.ppm", b"P6\n1 1\n255\nabc"),
         ("b.ppm", b"P6\n1 1\n255\nabd"),
         ("scene.txt", SCENE.as_bytes()),
     ]);
     let piped = |arguments: &str| {
         let arguments: Vec<_> = arguments.split_whitespace().collect();
-        let mut command = place.command(&arguments);
+        let mut command = place.command_of(arguments);
         let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         // Nobody reads it where the arguments are refused.
         let _ = child.stdin.take().unwrap().write_all(b"P6\n1 1\n255\nabc");
@@ -294,7 +257,7 @@ fn compare_reads_standard_input() {
 #[test]
 fn troubles_of_compare_are_json_where_that_is_asked_for() {
     let place =
-        Folder::new(&[("a.ppm", b"P6\n1 1\n255\nabc"), ("b.ppm", b"P6\n2 1\n255\nabcdef"), ("bad.txt", b"NEAR x\n")]);
+        Folder::with(&[("a.ppm", b"P6\n1 1\n255\nabc"), ("b.ppm", b"P6\n2 1\n255\nabcdef"), ("bad.txt", b"NEAR x\n")]);
     for (arguments, error) in [
         ("a.ppm none.ppm", "none.ppm: "),
         ("a.ppm b.ppm", "the pictures differ in size: A is 1x1, B is 2x1"),
@@ -310,7 +273,7 @@ fn troubles_of_compare_are_json_where_that_is_asked_for() {
         assert!(json["error"].as_str().unwrap().contains(error), "{json}");
         assert!(output.stderr.is_empty(), "{}", said(&output));
     }
-    std::fs::write(place.path().join("long.ppm"), b"P6\n1 1\n255\nabcd").unwrap();
+    std::fs::write(place.folder().join("long.ppm"), b"P6\n1 1\n255\nabcd").unwrap();
     let output = place.run("compare --json --lenient a.ppm long.ppm");
     assert_exit(&output, 0, "");
     assert_eq!(json(&output)["warnings"][0], "B: data after the last sample, ignored: 1 byte");
@@ -319,7 +282,7 @@ fn troubles_of_compare_are_json_where_that_is_asked_for() {
 
 #[test]
 fn the_heat_map_comes_with_its_legend() {
-    let place = Folder::new(&[("a.ppm", b"P6\n2 1\n255\nabcdef"), ("b.ppm", b"P6\n2 1\n255\nabddez")]);
+    let place = Folder::with(&[("a.ppm", b"P6\n2 1\n255\nabcdef"), ("b.ppm", b"P6\n2 1\n255\nabddez")]);
     let output = place.run("compare a.ppm b.ppm --heatmap heat.png");
     assert_exit(&output, 1, "heat map          1 level: purple (1 pixel)\n");
     assert_exit(&output, 1, "                  11 to 50 levels: amber (1 pixel)\n");
@@ -336,7 +299,7 @@ fn a_vast_picture_is_refused_by_its_header() {
     encoder.set_color(png::ColorType::Grayscale);
     encoder.set_depth(png::BitDepth::One);
     encoder.write_header().unwrap().write_chunk(png::chunk::IDAT, &vec![0; 600_000]).unwrap();
-    let place = Folder::new(&[("a.ppm", b"P6\n1 1\n255\nabc"), ("bomb.png", &bomb)]);
+    let place = Folder::with(&[("a.ppm", b"P6\n1 1\n255\nabc"), ("bomb.png", &bomb)]);
     for pictures in ["bomb.png a.ppm", "a.ppm bomb.png", "bomb.png bomb.png"] {
         let output = place.run(&format!("compare --lenient {pictures}"));
         assert_exit(&output, 2, "the header promises 65528x65535 pixels; at most 1073741824 are read");
@@ -347,11 +310,11 @@ fn a_vast_picture_is_refused_by_its_header() {
 fn statistics_have_one_shape() {
     let other = SCENE.replace("OUTPUT ", "OUTPUT other-");
     assert_ne!(other, SCENE);
-    let place = Folder::new(&[("a.txt", SCENE.as_bytes()), ("b.txt", other.as_bytes())]);
+    let place = Folder::with(&[("a.txt", SCENE.as_bytes()), ("b.txt", other.as_bytes())]);
     for (scenes, count) in [("a.txt", 1), ("a.txt b.txt", 2), ("none.txt", 0)] {
-        std::fs::create_dir_all(place.path().join("out")).unwrap();
+        std::fs::create_dir_all(place.folder().join("out")).unwrap();
         place.run(&format!("render --device cpu --stats-json stats.json -o out {scenes}"));
-        let stats = std::fs::read(place.path().join("stats.json")).unwrap();
+        let stats = std::fs::read(place.folder().join("stats.json")).unwrap();
         let stats: serde_json::Value = serde_json::from_slice(&stats).unwrap();
         assert_eq!(stats["pictures"].as_array().unwrap().len(), count, "{scenes}");
     }
@@ -359,10 +322,10 @@ fn statistics_have_one_shape() {
 
 #[test]
 fn another_template_of_the_assignment_scales_by_255_9() {
-    let place = Folder::new(&[("scene.txt", SCENE.as_bytes())]);
+    let place = Folder::with(&[("scene.txt", SCENE.as_bytes())]);
     assert_exit(&place.run("render --device cpu -q -o 255.ppm scene.txt"), 0, "");
     assert_exit(&place.run("render --device cpu -q --quantize 255.9 -o 2559.ppm scene.txt"), 0, "");
-    let [a, b] = ["255.ppm", "2559.ppm"].map(|name| std::fs::read(place.path().join(name)).unwrap());
+    let [a, b] = ["255.ppm", "2559.ppm"].map(|name| std::fs::read(place.folder().join(name)).unwrap());
     // The sphere is 0.9 · (1, 0.5, 0.3): 229.5, 114.75 and 68.85 of 255, 230.31, 115.155 and 69.093 of 255.9.
     let middle = 13 + (8 * 16 + 8) * 3;
     assert_eq!((&a[middle..middle + 3], &b[middle..middle + 3]), (&[229, 114, 68][..], &[230, 115, 69][..]));
@@ -372,7 +335,7 @@ fn another_template_of_the_assignment_scales_by_255_9() {
         for tier in ["fast", "robust", "double"] {
             let render = format!("render --device gpu --precision {tier} -q --quantize 255.9 -o gpu.ppm scene.txt");
             assert_exit(&place.run(&render), 0, "");
-            assert!(std::fs::read(place.path().join("gpu.ppm")).unwrap() == b, "{tier}");
+            assert!(std::fs::read(place.folder().join("gpu.ppm")).unwrap() == b, "{tier}");
         }
     }
 }

@@ -1,8 +1,7 @@
 //! Parts of a picture: each pixel is that of the whole one, files say what they are of, and `merge` takes what fits together alone.
 
 use std::fs;
-use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -21,7 +20,7 @@ use trueray::scene::Scene;
 use trueray::settings::Settings;
 use trueray::verify::Verify;
 
-use crate::support::{gpu, root, say, scene};
+use crate::support::{Folder, gpu, root, say, scene};
 
 const SIZE: (u32, u32) = (93, 61);
 
@@ -152,73 +151,42 @@ fn what_is_missing_is_named_whole() {
 
 // --- the program ----------------------------------------------------------------------------------------------------
 
-/// A folder where the program runs, with a scene in `scene.txt`.
-struct Folder(TempDir);
+/// With a scene in `scene.txt`.
+fn folder() -> Folder {
+    Folder::with_scene(&fs::read_to_string(root().join("scenes/effects/shadows.txt")).unwrap())
+}
 
-impl Folder {
-    fn new() -> Self {
-        let place = Self(tempfile::tempdir().unwrap());
-        let text = fs::read_to_string(root().join("scenes/effects/shadows.txt")).unwrap();
-        fs::write(place.path("scene.txt"), text).unwrap();
-        place
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    fn read(&self, name: &str) -> Vec<u8> {
-        fs::read(self.path(name)).unwrap()
-    }
-
-    fn command(&self, arguments: &str) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_trueray"));
-        command.args(arguments.split_whitespace()).current_dir(self.0.path()).stdin(Stdio::null());
-        command
-    }
-
-    /// Runs, and compares code and message.
-    #[track_caller]
-    fn run(&self, arguments: &str, code: i32, message: &str) -> Output {
-        let output = self.command(arguments).output().unwrap();
-        let stderr = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(code), "{arguments}: {stderr}");
-        assert!(stderr.contains(message), "{arguments}: expected '{message}' in:\n{stderr}");
-        output
-    }
-
-    /// Renders with these options to this file.
-    #[track_caller]
-    fn render(&self, options: &str, output: &str) {
-        self.run(&format!("render -q --device cpu --res 50x40 {options} scene.txt -o {output}"), 0, "");
-    }
+/// Renders with these options to this file.
+#[track_caller]
+fn render(place: &Folder, options: &str, output: &str) {
+    place.exits(&format!("render -q --device cpu --res 50x40 {options} scene.txt -o {output}"), 0, "");
 }
 
 #[test]
 fn parts_make_the_very_file_of_one_run() {
-    let place = Folder::new();
+    let place = folder();
     for ending in ["png", "ppm"] {
-        place.render("", &format!("one.{ending}"));
+        render(&place, "", &format!("one.{ending}"));
     }
     let merged = |parts: &str| {
         for ending in ["png", "ppm"] {
-            place.run(&format!("merge {parts} -o merged.{ending}"), 0, "50 × 40 from");
+            place.exits(&format!("merge {parts} -o merged.{ending}"), 0, "50 × 40 from");
             assert!(place.read(&format!("merged.{ending}")) == place.read(&format!("one.{ending}")), "{parts}");
         }
     };
     for index in 0..3 {
-        place.render(&format!("--tile {index}/3"), &format!("tile-{index}.png"));
+        render(&place, &format!("--tile {index}/3"), &format!("tile-{index}.png"));
     }
     merged("tile-2.png tile-0.png tile-1.png");
     for (index, crop) in ["0,13,0,40", "13,50,0,1", "13,14,1,40", "14,50,1,40"].iter().enumerate() {
-        place.render(&format!("--crop {crop}"), &format!("crop-{index}.{}", ["ppm", "png"][index % 2]));
+        render(&place, &format!("--crop {crop}"), &format!("crop-{index}.{}", ["ppm", "png"][index % 2]));
     }
     merged("crop-0.ppm crop-1.png crop-2.ppm crop-3.png");
-    place.render("--resume", "whole.png");
+    render(&place, "--resume", "whole.png");
     merged("whole.png");
     // A part is an ordinary picture of its size.
-    place.run("compare --scene scene.txt tile-0.png", 2, "");
-    place.run("compare crop-2.ppm crop-2.ppm", 0, "");
+    place.exits("compare --scene scene.txt tile-0.png", 2, "");
+    place.exits("compare crop-2.ppm crop-2.ppm", 0, "");
 }
 
 /// A device's parts in files, at the tier that `auto` takes and certified, where the CPU has a share.
@@ -227,24 +195,24 @@ fn parts_of_a_device_make_its_picture() {
     let test = "parts_of_a_device_make_its_picture";
     let Some(held) = gpu(test) else { return };
     drop(held);
-    let place = Folder::new();
-    let render = |options: &str| place.run(&format!("render -q --res 50x40 scene.txt {options}"), 0, "");
-    render("--device gpu -o one.png");
-    render("--device gpu --tile 0/2 -o a.png");
-    render("--device gpu --tile 1/2 -o b.png");
-    place.run("merge a.png b.png -o merged.png", 0, "");
+    let place = folder();
+    let device = |options: &str| place.exits(&format!("render -q --res 50x40 scene.txt {options}"), 0, "");
+    device("--device gpu -o one.png");
+    device("--device gpu --tile 0/2 -o a.png");
+    device("--device gpu --tile 1/2 -o b.png");
+    place.exits("merge a.png b.png -o merged.png", 0, "");
     assert!(place.read("merged.png") == place.read("one.png"));
 
-    place.render("--tile 1/2", "cpu.png");
-    place.run("merge a.png cpu.png -o no.png", 2, "precision is");
-    render("--device gpu --precision certified --tile 0/2 -o certified.png");
-    place.run("merge certified.png cpu.png -o merged.png", 0, "");
-    place.render("", "cpu-one.png");
+    render(&place, "--tile 1/2", "cpu.png");
+    place.exits("merge a.png cpu.png -o no.png", 2, "precision is");
+    device("--device gpu --precision certified --tile 0/2 -o certified.png");
+    place.exits("merge certified.png cpu.png -o merged.png", 0, "");
+    render(&place, "", "cpu-one.png");
     assert!(place.read("merged.png") == place.read("cpu-one.png"));
     // As another device's.
     with_other_note(&place, "b.png", "other.png", |note| note.replacen(r#""device":""#, r#""device":"another "#, 1));
-    place.run("merge a.png other.png -o no.png", 2, "other.png by another");
-    place.run("merge --allow-mixed-devices a.png other.png -o mixed.png", 0, "");
+    place.exits("merge a.png other.png -o no.png", 2, "other.png by another");
+    place.exits("merge --allow-mixed-devices a.png other.png -o mixed.png", 0, "");
     assert!(place.read("mixed.png") == place.read("one.png") && !place.path("no.png").exists());
 }
 
@@ -266,7 +234,7 @@ fn with_other_note(place: &Folder, from: &str, to: &str, change: impl Fn(&str) -
 
 #[test]
 fn what_does_not_fit_together_is_refused() {
-    let place = Folder::new();
+    let place = folder();
     for (options, name) in [
         ("--crop 0,50,0,20", "top.png"),
         ("--crop 0,50,20,40", "low.png"),
@@ -277,13 +245,13 @@ fn what_does_not_fit_together_is_refused() {
         ("--effects=-shadows --crop 0,50,20,40", "effects.png"),
         ("", "plain.png"),
     ] {
-        place.render(options, name);
+        render(&place, options, name);
     }
-    place.run("render -q --device cpu --res 50x41 --crop 0,50,20,40 scene.txt -o size.png", 0, "");
+    place.exits("render -q --device cpu --res 50x41 --crop 0,50,20,40 scene.txt -o size.png", 0, "");
     let scene = fs::read_to_string(place.path("scene.txt")).unwrap();
     fs::write(place.path("scene.txt"), format!("{scene}\nSPHERE another 0 0 -3 0.1 0.1 0.1 1 1 1 1 1 1 0 9\n"))
         .unwrap();
-    place.run("render -q --device cpu --res 50x40 --crop 0,50,20,40 scene.txt -o scene.png", 0, "");
+    place.exits("render -q --device cpu --res 50x40 --crop 0,50,20,40 scene.txt -o scene.png", 0, "");
     with_other_note(&place, "low.png", "version.png", |note| note.replacen("trueray 0", "trueray 99", 1));
     with_other_note(&place, "low.png", "lie.png", |note| note.replacen("[0,50,20,40]", "[0,50,20,39]", 1));
     with_other_note(&place, "low.png", "beyond.png", |note| note.replacen("[0,50,20,40]", "[0,50,21,41]", 1));
@@ -321,16 +289,16 @@ fn what_does_not_fit_together_is_refused() {
         ("top.png gone.png", 2, "gone.png"),
         ("top.png scene.txt", 2, "scene.txt"),
     ] {
-        place.run(&format!("merge {parts} -o no.png"), code, message);
+        place.exits(&format!("merge {parts} -o no.png"), code, message);
         assert!(!place.path("no.png").exists(), "{parts}");
     }
-    place.run("merge top.png low.png -o top.png", 6, "an input of this run");
-    place.run("merge top.png low.png -o folder/no.png", 6, "there is no folder");
+    place.exits("merge top.png low.png -o top.png", 6, "an input of this run");
+    place.exits("merge top.png low.png -o folder/no.png", 6, "there is no folder");
 }
 
 #[test]
 fn parts_that_there_are_not_are_refused() {
-    let place = Folder::new();
+    let place = folder();
     for (options, message) in [
         ("--crop 0,51,0,1 -o no.png", "the rectangle 0,51,0,1 is not within a picture of 50x40 pixels"),
         ("--crop 50,51,0,1 -o no.png", "not within"),
@@ -352,16 +320,16 @@ fn parts_that_there_are_not_are_refused() {
         ("--resume -o -", "--resume needs a file"),
         ("--tile 0/2 --format p3 -o no.png", "no p3"),
     ] {
-        place.run(&format!("render --device cpu --res 50x40 scene.txt {options}"), 2, message);
+        place.exits(&format!("render --device cpu --res 50x40 scene.txt {options}"), 2, message);
         assert!(!place.path("no.png").exists(), "{options}");
     }
 }
 
 #[test]
 fn what_is_there_and_whole_is_not_rendered_again() {
-    let place = Folder::new();
+    let place = folder();
     let run = |options: &str, code: i32, message: &str| {
-        place.run(&format!("render --device cpu --res 50x40 --resume scene.txt {options}"), code, message)
+        place.exits(&format!("render --device cpu --res 50x40 --resume scene.txt {options}"), code, message)
     };
     let modified = |name: &str| fs::metadata(place.path(name)).unwrap().modified().unwrap();
     for name in ["a.png", "a.ppm"] {
@@ -385,9 +353,9 @@ fn what_is_there_and_whole_is_not_rendered_again() {
         }
     }
     // What is cut off may be somebody else's, or a part of something else.
-    place.render("", "plain.ppm");
+    render(&place, "", "plain.ppm");
     let plain = place.read("plain.ppm");
-    place.render("--tile 0/2", "other.ppm");
+    render(&place, "--tile 0/2", "other.ppm");
     let other = place.read("other.ppm");
     for contents in [&plain[..plain.len() - 1], &other[..other.len() - 1], b"P6\n# my notes\n"] {
         fs::write(place.path("cut.ppm"), contents).unwrap();
@@ -396,12 +364,12 @@ fn what_is_there_and_whole_is_not_rendered_again() {
     }
     fs::write(place.path("text.png"), "not a picture").unwrap();
     run("-o text.png", 6, "text.png is another picture");
-    place.render("", "plain.png");
+    render(&place, "", "plain.png");
     run("-o plain.png", 6, "it does not say of what it is");
     // A whole picture is one part; and without --resume all are replaced.
     run("-o whole.png", 0, "50 × 40");
     run("-o whole.png", 0, "is there already");
-    place.render("", "whole.png");
+    render(&place, "", "whole.png");
     assert!(place.read("whole.png") == place.read("plain.png"));
 }
 
@@ -410,9 +378,9 @@ fn what_is_there_and_whole_is_not_rendered_again() {
 #[test]
 fn whatever_ends_a_run_its_repetition_ends_in_the_same_bytes() {
     let kills = std::env::var("TRUERAY_KILLS").ok().and_then(|count| count.parse().ok()).unwrap_or(6);
-    let place = Folder::new();
+    let place = folder();
     let options = "render -q --device cpu --res 900x700 --spp 9 scene.txt";
-    place.run(&format!("{options} -o one.png"), 0, "");
+    place.exits(&format!("{options} -o one.png"), 0, "");
     let tile = |index: u32| place.command(&format!("{options} --tile {index}/3 --resume -o part-{index}.png"));
     let start = Instant::now();
     assert!(tile(0).status().unwrap().success());
@@ -430,13 +398,13 @@ fn whatever_ends_a_run_its_repetition_ends_in_the_same_bytes() {
         ended += u32::from(!status.success());
         if kill % 3 == 2 || kill + 1 == kills {
             (0..3).for_each(|index| assert!(tile(index).status().unwrap().success(), "{index}"));
-            place.run("merge part-0.png part-1.png part-2.png -o merged.png", 0, "");
+            place.exits("merge part-0.png part-1.png part-2.png -o merged.png", 0, "");
             assert!(place.read("merged.png") == place.read("one.png"), "after {kill}");
         }
     }
     say("parts", &format!("{ended} of {kills} runs ended before their time"));
     assert!(kills < 6 || ended > 1, "{ended} of {kills}");
-    let left = fs::read_dir(place.0.path()).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let left = fs::read_dir(place.folder()).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
     assert_eq!(left.filter(|name| name.contains(".trueray-")).count(), 0, "nothing half-written stays");
 }
 
@@ -444,7 +412,7 @@ fn whatever_ends_a_run_its_repetition_ends_in_the_same_bytes() {
 #[cfg(unix)]
 #[test]
 fn a_stopped_run_asks_to_be_repeated_and_tells_openjd_so() {
-    let place = Folder::new();
+    let place = folder();
     let mut child = place
         .command("render --progress openjd --device cpu --res 3000x3000 --spp 256 scene.txt -o long.png")
         .stderr(Stdio::piped())
@@ -461,13 +429,13 @@ fn a_stopped_run_asks_to_be_repeated_and_tells_openjd_so() {
     assert!(stderr.contains("openjd_fail: ended as it was asked to"), "{stderr}");
     assert!(!place.path("long.png").exists());
     let output =
-        place.run("render --progress openjd --device cpu --res 50x40 scene.txt -o a.png", 0, "openjd_status: ");
+        place.exits("render --progress openjd --device cpu --res 50x40 scene.txt -o a.png", 0, "openjd_status: ");
     let stderr = String::from_utf8_lossy(&output.stderr);
     let mut progress = stderr.lines().rev().filter_map(|line| line.strip_prefix("openjd_progress: "));
     assert_eq!(progress.next().map(|part| part.parse::<f64>().unwrap()), Some(100.0), "{stderr}");
-    place.run("render --progress openjd --device cpu gone.txt -o a.png", 3, "openjd_fail: ");
+    place.exits("render --progress openjd --device cpu gone.txt -o a.png", 3, "openjd_fail: ");
     fs::write(place.path("bad.txt"), "SPHER\n").unwrap();
-    place.run("render -q --progress openjd --device cpu bad.txt -o a.png", 3, "openjd_fail: ");
+    place.exits("render -q --progress openjd --device cpu bad.txt -o a.png", 3, "openjd_fail: ");
 }
 
 // --- whatever a file says -------------------------------------------------------------------------------------------

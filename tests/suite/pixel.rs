@@ -338,15 +338,16 @@ fn what_is_no_pixel_is_refused_and_no_device_is_told() {
     assert_eq!(pixel(&scene, "scene.txt 4 4 --device gpu", false).status.code(), Some(4));
 }
 
-/// Each tier of the device stands beside the reference, with the levels of its picture.
+/// Each tier of the device stands beside the reference, with the levels of its picture and the colour that they are of.
 #[test]
 fn tiers_of_the_device_stand_beside_the_reference() {
     let test = "pixel::tiers_of_the_device_stand_beside_the_reference";
     let Some(gpu) = gpu(test) else { return };
     let ladder: Vec<Tier> = gpu.ladder().to_vec();
+    let is_double = gpu.device.info.f64;
     drop(gpu);
-    let output = pixel(&format!("{WINDOW}{MIRROR}"), "scene.txt 4 4 --device gpu --json", true);
-    let json: Value = serde_json::from_str(&text(&output)).unwrap();
+    let scene = format!("{WINDOW}{MIRROR}");
+    let json: Value = serde_json::from_str(&text(&pixel(&scene, "scene.txt 4 4 --device gpu --json", true))).unwrap();
     let tiers = json["tiers"].as_array().unwrap();
     assert_eq!(
         tiers.iter().map(|tier| tier["tier"].as_str().unwrap()).collect::<Vec<_>>(),
@@ -355,7 +356,48 @@ fn tiers_of_the_device_stand_beside_the_reference() {
     for tier in tiers {
         assert_eq!(tier["levels"], json["reference"]["levels"], "{tier}");
         assert_eq!((&tier["verdict"], &tier["difference"]), (&"same".into(), &serde_json::json!([0, 0, 0])));
+        let triple = |value: &Value| [0, 1, 2].map(|c| value[c].as_f64().unwrap());
+        let (color, expected) = (triple(&tier["color"]), triple(&json["reference"]["color"]));
+        // Of the reference's colour, which is between 2⁻⁷ and 1.
+        let last_place = |x: f64, bits: f64| 2_f64.powf(x.log2().floor() - bits);
+        let off =
+            |bits| -> [f64; 3] { std::array::from_fn(|c| (color[c] - expected[c]) / last_place(expected[c], bits)) };
+        assert!(expected.iter().all(|c| (0.008..1.0).contains(c)), "{expected:?}");
+        assert_eq!(triple(&tier["ulps"]), off(23.0), "{tier}");
+        assert!(triple(&tier["ulps"]).iter().all(|ulps| ulps.abs() < 20.0), "{tier}");
+        let is_double = is_double && tier["tier"] == "double";
+        assert_eq!(tier["ulps_f64"].is_array(), is_double, "{tier}");
+        if is_double {
+            assert_eq!(triple(&tier["ulps_f64"]), off(52.0), "{tier}");
+            assert!(triple(&tier["ulps_f64"]).iter().all(|ulps| ulps.abs() < 20.0), "{tier}");
+        } else {
+            // The colour of a tier in f32 is a number of f32.
+            assert!(color.iter().all(|&c| f64::from(c as f32) == c), "{tier}");
+        }
+        assert_eq!(tier["by_reference"], false);
     }
+    let table = text(&pixel(&scene, "scene.txt 4 4 --device gpu", true));
+    let places = ["f32", "f64"].map(|scalar| table.matches(&format!(" units in the last place of {scalar}\n")).count());
+    // Beside the reference's source in f32.
+    assert_eq!(places, [1 + ladder.len() - usize::from(is_double), usize::from(is_double)], "{table}");
     assert_eq!(json["sphere_names"]["0"], "mirror");
     assert!(json["single"]["ulps"].as_array().unwrap().iter().all(|ulps| ulps.as_f64().unwrap().abs() < 20.0));
+}
+
+/// Where a ray may touch a sphere or not, the reference has decided, and what is shown says so.
+#[test]
+fn what_the_reference_has_decided_for_a_tier_is_told() {
+    let test = "pixel::what_the_reference_has_decided_for_a_tier_is_told";
+    if gpu(test).is_none() {
+        return;
+    }
+    let scene = format!("{WINDOW}SPHERE s 1 0 -5 1 1 1 1 0 0 1 0 0 0 1\nAMBIENT 1 1 1\n");
+    let json: Value = serde_json::from_str(&text(&pixel(&scene, "scene.txt 4 4 --device gpu --json", true))).unwrap();
+    for tier in json["tiers"].as_array().unwrap() {
+        let tells_tangents = tier["tier"] != "fast";
+        assert_eq!(tier["by_reference"], tells_tangents, "{tier}");
+        assert!(!tells_tangents || tier["color"] == json["reference"]["color"], "{tier}");
+    }
+    let table = text(&pixel(&scene, "scene.txt 4 4 --device gpu", true));
+    assert_eq!(table.matches("by the CPU reference: ").count(), json["tiers"].as_array().unwrap().len() - 1, "{table}");
 }

@@ -11,7 +11,7 @@ use trueray::tuning::Tuning;
 use crate::support::{gpu, scene, scene_files, scene_of};
 
 const COUNTED: Options =
-    Options { certified: false, linear: false, count_rays: true, device_clock: false, pixel_ms: None };
+    Options { certified: false, linear: false, terms: false, count_rays: true, device_clock: false, pixel_ms: None };
 
 /// The rays of the whole picture, and the picture.
 fn counted(backend: Backend, scene: &Scene, settings: &Settings, effects: &Effects) -> (Rays, Vec<u8>) {

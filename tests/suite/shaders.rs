@@ -34,6 +34,7 @@ fn kinds() -> impl Iterator<Item = Variant> {
         (Secondary::Both, Tables::Sampled, in_turn),
         (Secondary::Both, Tables::Buffers, in_turn),
         (Secondary::Grid, Tables::Buffers, Schedule::InPlace),
+        (Secondary::Grid, Tables::Stored, Schedule::First),
     ];
     kernels.flat_map(move |kernel| {
         let certified = [false, true].into_iter().filter(move |certified| !(*certified && kernel.carries_low()));
@@ -85,7 +86,7 @@ fn entry_points(variant: &Variant) -> Vec<&'static str> {
         Slots::List => TRACE_SAMPLES,
     };
     match (variant.refraction, variant.schedule) {
-        (Some(_), _) | (None, Schedule::InPlace) => vec![trace],
+        (Some(_), _) | (None, Schedule::InPlace | Schedule::First) => vec![trace],
         (None, Schedule::AtOnce) => vec![WALK_PATHS, trace],
         (None, Schedule::InTurn(_)) => vec![WALK_PATHS, SHADE_PATHS, trace],
     }

@@ -1,6 +1,9 @@
 //! What several test modules share.
 
+mod folder;
+
 use std::collections::BTreeMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::Write as _;
 use std::num::NonZero;
 use std::path::{Path, PathBuf};
@@ -15,6 +18,8 @@ use trueray::gpu::{Choice, Gpu};
 use trueray::precision::Tier;
 use trueray::scene::{Scene, Window, parse};
 use trueray::settings::Settings;
+
+pub(crate) use folder::{Folder, assert_exit};
 
 /// Compiling is what tests with a device take most of their time for: they share as many kernels as there are.
 pub(crate) const KEPT: NonZero<usize> = NonZero::new(400).unwrap();
@@ -126,11 +131,19 @@ pub(crate) fn gpu_picture(
     (picture(scene, rgb), not_finite)
 }
 
-/// The CPU's picture in the scalar `T` and its number of pixels that are not finite.
+/// The CPU's picture in the scalar `T` and its number of pixels that are not finite, made once for all tests that ask for it.
 pub(crate) fn cpu_picture<T: Real>(scene: &Scene, settings: &Settings, effects: &Effects) -> (Picture, u64) {
-    let mut rgb = vec![0; scene.width as usize * scene.height as usize * 3];
-    let tally = Reference::<T>::new(&scene.viewed(settings), effects).rows(0, &mut rgb).unwrap();
-    (picture(scene, rgb), tally.not_finite)
+    type Made = Arc<OnceLock<(Picture, u64)>>;
+    static MADE: Mutex<BTreeMap<u64, Made>> = Mutex::new(BTreeMap::new());
+    let mut hasher = DefaultHasher::new();
+    format!("{} {scene:?} {settings:?} {effects:?}", std::any::type_name::<T>()).hash(&mut hasher);
+    let made = Arc::clone(MADE.lock().unwrap().entry(hasher.finish()).or_default());
+    made.get_or_init(|| {
+        let mut rgb = vec![0; scene.width as usize * scene.height as usize * 3];
+        let tally = Reference::<T>::new(&scene.viewed(settings), effects).rows(0, &mut rgb).unwrap();
+        (picture(scene, rgb), tally.not_finite)
+    })
+    .clone()
 }
 
 /// A scene with its reference and the reference's picture.
@@ -146,9 +159,8 @@ impl Case {
     pub(crate) fn new(scene: &Scene, settings: &Settings) -> Self {
         let effects = Effects::of(&scene.viewed(settings));
         let reference = Reference::new(&scene.viewed(settings), &effects);
-        let mut rgb = vec![0; scene.width as usize * scene.height as usize * 3];
-        assert_eq!(reference.rows(0, &mut rgb).unwrap().not_finite, 0);
-        let expected = picture(scene, rgb);
+        let (expected, not_finite) = cpu_picture::<f64>(scene, settings, &effects);
+        assert_eq!(not_finite, 0);
         Self { scene: scene.clone(), settings: *settings, effects, reference, expected }
     }
 

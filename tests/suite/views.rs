@@ -2,11 +2,10 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 
 use glam::DVec3;
 use serde_json::Value;
-use tempfile::TempDir;
 use trueray::effects::Effects;
 use trueray::engine::{Backend, Engine, Options, render_picture};
 use trueray::film::Picture;
@@ -21,7 +20,7 @@ use trueray::view::View;
 use trueray::views::{Frame, NoCenter, Placement, table, turntable};
 use trueray::{Fov, Renderer, Window};
 
-use crate::support::{gpu, root, scene, scene_of};
+use crate::support::{Folder, gpu, root, scene, scene_of};
 
 /// Three spheres, one of them a mirror and one an ellipsoid, and a light that casts shadows.
 const SCENE: &str = "SPHERE a 0 0 -6 2 2 2 0.9 0.2 0.1 0.3 0.7 0.3 0.4 20\nSPHERE b 2 1 -5 0.5 1 0.5 0.1 0.8 0.3 0.3 0.6 0.2 0 10\n\
@@ -31,46 +30,19 @@ const HEAD: &str = "NEAR 1\nLEFT -1\nRIGHT 1\nBOTTOM -1\nTOP 1\n";
 /// Where the file's camera is.
 const START: Placement = Placement { eye: DVec3::ZERO, look_at: None, up: DVec3::Y, fov: None };
 
-/// A folder with the scene in `scene.txt`, where the program runs.
-struct Folder(TempDir);
+/// With the scene in `scene.txt`.
+fn folder() -> Folder {
+    Folder::with_scene(&format!("{HEAD}RES 24 16\n{SCENE}OUTPUT own.png\n"))
+}
 
-impl Folder {
-    fn new() -> Self {
-        let folder = Self(tempfile::tempdir().unwrap());
-        folder.write("scene.txt", &format!("{HEAD}RES 24 16\n{SCENE}OUTPUT own.png\n"));
-        folder
-    }
+fn picture(place: &Folder, name: &str) -> Picture {
+    Picture::read(place.path(name)).unwrap()
+}
 
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    fn write(&self, name: &str, text: &str) {
-        fs::write(self.path(name), text).unwrap();
-    }
-
-    fn picture(&self, name: &str) -> Picture {
-        Picture::read(self.path(name)).unwrap()
-    }
-
-    fn files(&self) -> Vec<String> {
-        let entries = fs::read_dir(self.0.path()).unwrap();
-        let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-        names.sort();
-        names
-    }
-
-    /// Renders on the CPU, and compares code and message.
-    #[track_caller]
-    fn render(&self, arguments: &str, code: i32, message: &str) -> Output {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_trueray"));
-        command.args(["render", "--device", "cpu"]).args(arguments.split_whitespace()).current_dir(self.0.path());
-        let output = command.output().unwrap();
-        let stderr = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(code), "{arguments}: {stderr}");
-        assert!(stderr.contains(message), "{arguments}: expected '{message}' in:\n{stderr}");
-        output
-    }
+/// Renders on the CPU, and compares code and message.
+#[track_caller]
+fn render(place: &Folder, arguments: &str, code: i32, message: &str) -> Output {
+    place.exits(&format!("render --device cpu {arguments}"), code, message)
 }
 
 fn view(eye: [f64; 3], look_at: Option<[f64; 3]>) -> View {
@@ -202,10 +174,9 @@ fn frames_at_once_have_tables_of_their_own() {
 /// All that a row can say: the eye, the size, the window, another scene.
 #[test]
 fn rows_are_what_options_and_scene_files_say() {
-    let place = Folder::new();
+    let place = folder();
     fs::create_dir(place.path("folder")).unwrap();
-    place
-        .write("folder/other.txt", &format!("{HEAD}RES 10 12\nSPHERE s 0 0 -4 1 1 1 1 1 0 1 0 0 0 1\nAMBIENT 1 1 1\n"));
+    place.write("folder/other.txt", format!("{HEAD}RES 10 12\nSPHERE s 0 0 -4 1 1 1 1 1 0 1 0 0 0 1\nAMBIENT 1 1 1\n"));
     place.write(
         "folder/views.csv",
         "eye_x,eye_y,eye_z,at_x,at_y,at_z,up_x,up_y,up_z,width,height,near,left,right,bottom,top,fov,scene\n\
@@ -216,7 +187,7 @@ fn rows_are_what_options_and_scene_files_say() {
          -0.5,,,,,,,,,,,,,,,,,\n\
          ,,,,,,,,,12,,0.5,,,,,60,\n",
     );
-    place.render("-q --views folder/views.csv scene.txt -o f%d.png", 0, "");
+    render(&place, "-q --views folder/views.csv scene.txt -o f%d.png", 0, "");
     let own = Scene::from_text("own", &fs::read(place.path("scene.txt")).unwrap()).unwrap();
     let other = Scene::from_text("other", &fs::read(place.path("folder/other.txt")).unwrap()).unwrap();
     let mut sized = Scene { width: 12, ..own.clone() };
@@ -232,14 +203,14 @@ fn rows_are_what_options_and_scene_files_say() {
         (6, &seen, View::FILE),
     ] {
         let expected = Renderer::reference().render(scene, &Settings { view, ..Settings::default() }).unwrap();
-        assert!(place.picture(&format!("f{number}.png")) == expected, "frame {number}");
+        assert!(picture(&place, &format!("f{number}.png")) == expected, "frame {number}");
     }
     // What a row leaves empty is as in the options.
     place.write("two.csv", "eye_x,eye_y,fov\n,,20\n2,,\n");
-    place.render("-q --views two.csv scene.txt --eye 1,1,1 --look-at 0,0,-6 --res 6x6 --fov 50 -o g%d.ppm", 0, "");
+    render(&place, "-q --views two.csv scene.txt --eye 1,1,1 --look-at 0,0,-6 --res 6x6 --fov 50 -o g%d.ppm", 0, "");
     let settings = Settings { view: view([2.0, 1.0, 1.0], Some([0.0, 0.0, -6.0])), ..Settings::default() };
     let small = Scene { width: 6, height: 6, window: Fov::from_degrees(50.0).unwrap().window(1.0, (6, 6)), ..own };
-    assert!(place.picture("g2.ppm") == Renderer::reference().render(&small, &settings).unwrap());
+    assert!(picture(&place, "g2.ppm") == Renderer::reference().render(&small, &settings).unwrap());
 }
 
 #[test]
@@ -288,8 +259,8 @@ fn a_turntable_goes_around_once() {
 
 #[test]
 fn frames_are_chosen_and_keep_their_numbers() {
-    let place = Folder::new();
-    place.render("-q --turntable 12 --frames 10-11,2 scene.txt -o f%03d.png --stats-json stats.json", 0, "");
+    let place = folder();
+    render(&place, "-q --turntable 12 --frames 10-11,2 scene.txt -o f%03d.png --stats-json stats.json", 0, "");
     assert_eq!(place.files(), ["f002.png", "f010.png", "f011.png", "scene.txt", "stats.json"]);
     let stats: Value = serde_json::from_slice(&fs::read(place.path("stats.json")).unwrap()).unwrap();
     let pictures = stats["pictures"].as_array().unwrap();
@@ -297,9 +268,9 @@ fn frames_are_chosen_and_keep_their_numbers() {
     assert_eq!(frames, [2, 10, 11]);
     assert!(pictures[1]["output"] == "f010.png" && pictures[1]["rays"]["primary"] == 24 * 16, "{stats}");
     // A folder, or nothing: the name that OUTPUT gives, with a number.
-    place.render("--turntable 2 --stats --progress json scene.txt", 0, "2 frames, 24 × 16 on");
-    assert!(place.picture("own_0002.png") != place.picture("own_0001.png"));
-    let said = place.render("--turntable 2 --progress json scene.txt", 0, "").stderr;
+    render(&place, "--turntable 2 --stats --progress json scene.txt", 0, "2 frames, 24 × 16 on");
+    assert!(picture(&place, "own_0002.png") != picture(&place, "own_0001.png"));
+    let said = render(&place, "--turntable 2 --progress json scene.txt", 0, "").stderr;
     let said = String::from_utf8(said).unwrap();
     let last: Value = serde_json::from_str(said.lines().find(|line| line.starts_with('{')).unwrap()).unwrap();
     assert!(last["frames"] == 2 && last["frames_done"] == 2 && last["finished"] == true, "{said}");
@@ -309,7 +280,7 @@ fn frames_are_chosen_and_keep_their_numbers() {
 
 #[test]
 fn what_makes_no_sense_is_refused_before_anything_is_rendered() {
-    let place = Folder::new();
+    let place = folder();
     place.write("views.csv", "eye_x\n1\n");
     place.write("views.ppm", "eye_x\n1\n2\n");
     let files = place.files();
@@ -331,7 +302,7 @@ fn what_makes_no_sense_is_refused_before_anything_is_rendered() {
         ("--views none.csv scene.txt -o f%d.png", 3, "cannot read the views none.csv"),
         ("--views views.ppm scene.txt -o views.ppm%%%d --format p6", 0, ""),
     ] {
-        place.render(arguments, code, message);
+        render(&place, arguments, code, message);
         let new = place.files().into_iter().filter(|name| !files.contains(name)).collect::<Vec<_>>();
         let expected: &[&str] = if code == 0 { &["views.ppm%1", "views.ppm%2"] } else { &[] };
         assert_eq!(new, expected, "{arguments}");
@@ -340,8 +311,8 @@ fn what_makes_no_sense_is_refused_before_anything_is_rendered() {
 
 #[test]
 fn no_frame_is_an_input_or_another_output() {
-    let place = Folder::new();
-    place.write("scene3.txt", &fs::read_to_string(place.path("scene.txt")).unwrap());
+    let place = folder();
+    place.write("scene3.txt", fs::read_to_string(place.path("scene.txt")).unwrap());
     place.write("views1.ppm", "eye_x,scene\n,\n,scene3.txt\n");
     for arguments in [
         "--turntable 3 scene3.txt -o scene%d.txt --format p6",
@@ -349,21 +320,25 @@ fn no_frame_is_an_input_or_another_output() {
         "--views views1.ppm scene.txt -o s%d.ppm --stats-json s2.ppm",
     ] {
         let files = place.files();
-        place.render(arguments, 6, "would overwrite");
+        render(&place, arguments, 6, "would overwrite");
         assert_eq!(place.files(), files, "{arguments}");
     }
     place.write("again.csv", "eye_x,scene\n0,\n1,\n2,scene3.txt\n");
-    place.render("--views again.csv scene.txt -o scene%d.txt --format p6", 6, "frame 3 would overwrite scene3.txt");
+    render(&place, "--views again.csv scene.txt -o scene%d.txt --format p6", 6, "frame 3 would overwrite scene3.txt");
     assert!(!place.path("scene1.txt").exists());
 }
 
 #[test]
 fn a_frame_that_fails_is_named_and_keeps_no_other_from_being_rendered() {
-    let place = Folder::new();
+    let place = folder();
     place.write("bad.txt", "NEAR\n");
     place.write("views.csv", "eye_x,left,scene\n0,,\n1e200,,\n0,1,\n0,,bad.txt\n0.5,,\n");
-    let output =
-        place.render("-q --views views.csv scene.txt -o f%d.png", 3, "trueray: frame 2: the scene cannot be rendered");
+    let output = render(
+        &place,
+        "-q --views views.csv scene.txt -o f%d.png",
+        3,
+        "trueray: frame 2: the scene cannot be rendered",
+    );
     let said = String::from_utf8(output.stderr).unwrap();
     assert!(said.contains("frame 3: right of the window is 1") && said.contains("frame 4: its scene"), "{said}");
     assert_eq!(place.files(), ["bad.txt", "f1.png", "f5.png", "scene.txt", "views.csv"]);
@@ -413,37 +388,37 @@ fn tables_as_other_programs_write_them_are_read() {
 /// one option away from each other.
 #[test]
 fn frames_are_resumed_and_particles_turn() {
-    let folder = Folder::new();
-    folder.render("scene.txt --turntable 3 --resume -o a_%d.png", 0, "3 frames");
-    let first = fs::read(folder.path("a_1.png")).unwrap();
-    fs::remove_file(folder.path("a_2.png")).unwrap();
-    let stamp = || fs::metadata(folder.path("a_1.png")).unwrap().modified().unwrap();
+    let place = folder();
+    render(&place, "scene.txt --turntable 3 --resume -o a_%d.png", 0, "3 frames");
+    let first = fs::read(place.path("a_1.png")).unwrap();
+    fs::remove_file(place.path("a_2.png")).unwrap();
+    let stamp = || fs::metadata(place.path("a_1.png")).unwrap().modified().unwrap();
     let before = stamp();
-    folder.render("scene.txt --turntable 3 --resume -o a_%d.png", 0, "2 frames there already");
-    assert_eq!((stamp(), fs::read(folder.path("a_1.png")).unwrap()), (before, first));
-    assert!(folder.path("a_2.png").is_file());
-    folder.render("scene.txt --turntable 4 --resume -o a_%d.png", 6, "frame 2: ");
-    folder.render("scene.txt --turntable 4 --progress openjd --resume -o a_%d.png", 6, "openjd_fail: frame 2: ");
+    render(&place, "scene.txt --turntable 3 --resume -o a_%d.png", 0, "2 frames there already");
+    assert_eq!((stamp(), fs::read(place.path("a_1.png")).unwrap()), (before, first));
+    assert!(place.path("a_2.png").is_file());
+    render(&place, "scene.txt --turntable 4 --resume -o a_%d.png", 6, "frame 2: ");
+    render(&place, "scene.txt --turntable 4 --progress openjd --resume -o a_%d.png", 6, "openjd_fail: frame 2: ");
     // The scene of a frame that is not chosen is an input as well.
-    folder.write("table.csv", "scene\nother_2.txt\nscene.txt\n");
-    fs::copy(folder.path("scene.txt"), folder.path("other_2.txt")).unwrap();
-    folder.render("scene.txt --views table.csv --frames 2 --format p6 -o other_%d.txt", 6, "an input of this run");
-    folder.render("scene.txt --turntable 3 --tile 0/2 -o b_%d.png", 2, "do not go with --crop or --tile");
+    place.write("table.csv", "scene\nother_2.txt\nscene.txt\n");
+    fs::copy(place.path("scene.txt"), place.path("other_2.txt")).unwrap();
+    render(&place, "scene.txt --views table.csv --frames 2 --format p6 -o other_%d.txt", 6, "an input of this run");
+    render(&place, "scene.txt --turntable 3 --tile 0/2 -o b_%d.png", 2, "do not go with --crop or --tile");
 
-    folder.write("water.xyz", "3\n\nO 0 0 0\nH 0.96 0 0\nH -0.24 0.93 0\n");
-    folder.render("water.xyz --turntable 2 --radius 0.5 --res 32x24 -o w_%d.png", 0, "2 frames");
-    folder.render("water.xyz --radius 0.5 --fit ball --res 32x24 -o single.png", 0, "");
-    assert_eq!(folder.picture("w_1.png"), folder.picture("single.png"));
-    assert_ne!(folder.picture("w_2.png"), folder.picture("single.png"));
+    place.write("water.xyz", "3\n\nO 0 0 0\nH 0.96 0 0\nH -0.24 0.93 0\n");
+    render(&place, "water.xyz --turntable 2 --radius 0.5 --res 32x24 -o w_%d.png", 0, "2 frames");
+    render(&place, "water.xyz --radius 0.5 --fit ball --res 32x24 -o single.png", 0, "");
+    assert_eq!(picture(&place, "w_1.png"), picture(&place, "single.png"));
+    assert_ne!(picture(&place, "w_2.png"), picture(&place, "single.png"));
 
     // The lights turn with the eye, also where frames share lists; a view of the table is the run with that eye.
-    folder.write("far.csv", "eye_x,eye_y,eye_z,at_x,at_y,at_z\n0,0,0,0,0,-9\n1,0,-18,0,0,-9\n0,0,1,0,0,-9\n");
+    place.write("far.csv", "eye_x,eye_y,eye_z,at_x,at_y,at_z\n0,0,0,0,0,-9\n1,0,-18,0,0,-9\n0,0,1,0,0,-9\n");
     for light in ["headlight", "dome:4"] {
         let options = format!("water.xyz --radius 0.5 --light {light} --res 32x24");
-        folder.render(&format!("{options} --views far.csv -o v_%d.png"), 0, "3 frames");
-        folder.render(&format!("{options} --eye 1,0,-18 --look-at 0,0,-9 -o eye.png"), 0, "");
-        assert_eq!(folder.picture("v_2.png"), folder.picture("eye.png"), "{light}");
-        folder.render(&format!("{options} --eye 0,0,1 --look-at 0,0,-9 -o eye.png"), 0, "");
-        assert_eq!(folder.picture("v_3.png"), folder.picture("eye.png"), "{light}");
+        render(&place, &format!("{options} --views far.csv -o v_%d.png"), 0, "3 frames");
+        render(&place, &format!("{options} --eye 1,0,-18 --look-at 0,0,-9 -o eye.png"), 0, "");
+        assert_eq!(picture(&place, "v_2.png"), picture(&place, "eye.png"), "{light}");
+        render(&place, &format!("{options} --eye 0,0,1 --look-at 0,0,-9 -o eye.png"), 0, "");
+        assert_eq!(picture(&place, "v_3.png"), picture(&place, "eye.png"), "{light}");
     }
 }

@@ -28,7 +28,7 @@ files! {
     "counters"
     "difference_f32" "difference_f64" "distance_pair" "distance_real" "echo" "effects" "eft" "elementary_f32"
     "elementary_f64" "entry_copied" "entry_shared" "fill" "filled_nearest" "filled_smooth" "film_pixels" "film_samples"
-    "flood" "grid" "intersect" "jump" "kernel_plain" "kernel_robust" "kernel_schoolbook" "path_in_place" "path_kept"
+    "flood" "grid" "intersect" "jump" "kernel_plain" "kernel_robust" "kernel_schoolbook" "path_first" "path_in_place" "path_kept"
     "path_tree" "probe" "quantize" "queue" "quotients" "ray_plain" "ray_robust" "real_f32" "real_f64" "reflect" "refract" "resolve"
     "roots_pair" "roots_single" "scene_ranges" "scene_tables" "search_all" "search_lists" "secondary_both" "secondary_grid"
     "secondary_large" "selftest" "shade" "slots_list" "slots_tiles" "tables_buffers" "tables_textures" "texels"
@@ -133,7 +133,11 @@ impl Variant {
             "film" => either(self.samples, "samples", "pixels"),
             "slots" => either(self.slots == Slots::List, "list", "tiles"),
             "path" if refraction.is_some() => "tree",
-            "path" => either(schedule == Schedule::InPlace, "in_place", "kept"),
+            "path" => match schedule {
+                Schedule::First => "first",
+                Schedule::InPlace => "in_place",
+                Schedule::AtOnce | Schedule::InTurn(_) => "kept",
+            },
             "walk" => either(schedule == Schedule::AtOnce, "at_once", "in_turn"),
             _ => return None,
         })

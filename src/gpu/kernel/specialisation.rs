@@ -147,7 +147,7 @@ impl Specialisation {
             constants.push(("VECTORS", self.path_vectors() as f64));
             let paths = match self.schedule {
                 Schedule::InTurn(paths) => paths.get(),
-                Schedule::InPlace | Schedule::AtOnce => 1,
+                _ => 1,
             };
             constants.push(("PATHS", f64::from(paths)));
         }

@@ -93,6 +93,8 @@ pub enum Storage {
 pub enum Schedule {
     /// To the end, by the invocation that casts the primary ray.
     InPlace,
+    /// No bounce, where nothing refracts: a term of the first hit stands in place of the colour.
+    First,
     /// A bounce at a time: one an invocation, which also shades what it meets.
     AtOnce,
     /// A bounce at a time: so many an invocation, one after another; then a kernel shades what they have met.
@@ -149,7 +151,7 @@ impl Variant {
 
     /// Whether paths are kept from bounce to bounce.
     pub fn keeps_paths(&self) -> bool {
-        self.refraction.is_none() && self.schedule != Schedule::InPlace
+        self.refraction.is_none() && !matches!(self.schedule, Schedule::InPlace | Schedule::First)
     }
 
     /// Whether walks read copies of the spheres in the order of the grid's lists.

@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use glam::DVec3;
 use rayon::prelude::*;
 
 use super::GpuRenderer;
@@ -9,6 +10,7 @@ use super::order::{curve, dealt};
 use super::output::Rows;
 use super::place::{Statuses, place_means, place_tiles};
 use super::rendered::Rendered;
+use super::term::Term;
 use super::tiles::TILE_PIXELS;
 use super::work::Work;
 use crate::area::Area;
@@ -40,6 +42,22 @@ impl GpuRenderer<'_, Rows> {
         let count = check_rows(area.size(), first, rgb.len())?;
         check_colors(rgb.len() / 3, if self.is_linear() { linear.len() } else { 0 })?;
         self.gpu.device.guarded(|| self.bands(area.top + first, count, rgb, linear))
+    }
+
+    /// Calculates a term of rows `first` on, with its mean where a pixel has several samples.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Misuse`] where these are no rows of it, or the renderer was not prepared with [`terms`](super::Options::terms).
+    pub fn terms(&mut self, term: Term, first: u32, values: &mut [Linear]) -> Result<Rendered, Error> {
+        check_colors(values.len(), if self.has_terms() { values.len() } else { 0 })?;
+        self.term = term.words();
+        let rendered = self.linear_rows(first, &mut vec![0; 3 * values.len()], values)?;
+        if term != Term::Background {
+            // Where no sphere is near, nothing is dispatched.
+            values.iter_mut().filter(|value| value.coverage == 0.0).for_each(|value| value.color = DVec3::ZERO);
+        }
+        Ok(rendered)
     }
 
     /// `linear` is empty where it is not wanted.

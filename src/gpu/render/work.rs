@@ -33,6 +33,8 @@ pub(super) struct Work {
     pub(super) resolve_group: Option<wgpu::BindGroup>,
     pub(super) tiles: wgpu::Buffer,
     pub(super) path_queue: wgpu::Buffer,
+    /// Which term is asked for, where the kernel has terms in place of colours.
+    pub(super) asked: wgpu::Buffer,
     /// Workgroups of the next bounce: of the kernel with a path an invocation, and of the one with several.
     pub(super) workgroups: wgpu::Buffer,
     pub(super) pixels: Readable,
@@ -72,6 +74,7 @@ impl Work {
             Slots::List => empty((1 + pixel_count) * 8, storage | copied),
         };
         let path_queue = empty(PATH_QUEUE_SIZE, storage | copied);
+        let asked = empty(8, wgpu::BufferUsages::UNIFORM | copied);
         let workgroups = empty(4 * u64::from(WORKGROUP_WORDS), storage | wgpu::BufferUsages::INDIRECT);
         let colors = pipelines.resolve.as_ref().map(|_| empty(slots * specialisation.color_size(), storage));
         let mut all = resources.to_vec();
@@ -81,6 +84,7 @@ impl Work {
         bind("ray_counts", &ray_counts.buffer);
         bind("means", &means.buffer);
         bind("path_queue", &path_queue);
+        bind("asked", &asked);
         bind("pixels", &pixels.buffer);
         bind("workgroups", &workgroups);
         if let Some(colors) = &colors {
@@ -117,6 +121,7 @@ impl Work {
             resolve_group,
             tiles,
             path_queue,
+            asked,
             workgroups,
             pixels,
             ray_counts,
