@@ -12,6 +12,7 @@ use crate::camera::Camera;
 use crate::cpu::{Dd, Vec3};
 use crate::decimal::Decimal;
 use crate::geometry::Ellipsoid;
+use crate::pattern::Ticks;
 use crate::scene::Sphere;
 use crate::viewed::ViewedScene;
 
@@ -85,23 +86,23 @@ struct Edges {
     first: Decimal,
     /// What the other edge adds.
     size: Decimal,
-    /// Samples between them.
+    /// Steps between them.
     count: Decimal,
-    /// Where in its cell a sample lies.
-    offset: Decimal,
+    /// How many of these each sample lies from the first.
+    ticks: Ticks,
 }
 
 impl Edges {
-    fn new([first, last]: [f64; 2], count: [u32; 2], offset: f64) -> Self {
-        let [first, last, offset] = [first, last, offset].map(Decimal::shortest);
-        let [pixels, samples] = count.map(Decimal::from);
-        Self { size: &last - &first, first, count: &pixels * &samples, offset }
+    fn new(ends: [f64; 2], pixels: u32, ticks: Ticks) -> Self {
+        let [first, last] = ends.map(Decimal::shortest);
+        let count = Decimal::from(i64::from(pixels) * i64::from(ticks.steps()));
+        Self { size: &last - &first, first, count, ticks }
     }
 
-    /// The place of the sample with this index, times their count.
+    /// The place of the sample with this index, times the count of steps.
     fn place(&self, index: u32) -> Decimal {
-        let Self { first, size, count, offset } = self;
-        &(first * count) + &(size * &(&Decimal::from(index) + offset))
+        let Self { first, size, count, ticks } = self;
+        &(first * count) + &(size * &Decimal::from(ticks.steps_to(index)))
     }
 }
 
@@ -109,13 +110,13 @@ impl ExactCamera {
     /// Of the scene as the file has it.
     pub fn new(viewed: &ViewedScene) -> Self {
         let (scene, settings) = viewed.in_file();
-        let (window, side) = (scene.window, settings.samples_per_side);
-        let (x, y) = settings.sampling.offset();
+        let window = scene.window;
+        let [across, down] = settings.pattern.ticks(settings.sampling.offset());
         Self {
             eye: vector(settings.view.eye),
             axes: settings.view.axes().map(vector),
-            across: Edges::new([window.left, window.right], [scene.width, side], x),
-            down: Edges::new([window.top, window.bottom], [scene.height, side], y),
+            across: Edges::new([window.left, window.right], scene.width, across),
+            down: Edges::new([window.top, window.bottom], scene.height, down),
             near: Decimal::shortest(window.near),
         }
     }

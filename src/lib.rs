@@ -99,6 +99,7 @@ mod origin;
 mod panics;
 #[doc(hidden)]
 pub mod part;
+pub mod pattern;
 #[doc(hidden)]
 pub mod precision;
 mod random;

@@ -2,13 +2,14 @@
 
 use super::failure::{Failure, SCENE, USAGE};
 use super::output::errln;
-use clap::Args;
+use clap::{Args, ValueEnum};
 use glam::DVec3;
 
 use crate::doubts::doubts;
 use crate::effects::{Effects, Request};
 use crate::gpu::{Choice, Error, Gpu};
 use crate::limits;
+use crate::pattern::{Filter, Pattern};
 use crate::precision::{self, Selection, Tier};
 use crate::scene::{Fov, Scene, resolution};
 use crate::settings::{Convention, Quantize, SampleOffset, Secondary, Settings, Specular};
@@ -18,6 +19,15 @@ use crate::viewed::ViewedScene;
 #[cfg(feature = "view")]
 use crate::viewer::{FlightScale, Pose, ViewState};
 use crate::views::Placement;
+
+/// How the samples of a pixel are placed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum PatternName {
+    /// A regular grid over the pixel
+    Grid,
+    /// A Fibonacci lattice of any number of samples: edges that are nearly level or upright have many more shades
+    Fibonacci,
+}
 
 /// What decides the picture besides the scene.
 #[derive(Debug, Args)]
@@ -41,9 +51,15 @@ pub(super) struct PictureOptions {
     /// Greatest number of bounces, reflected or refracted
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(0..=i64::from(Settings::MAX_DEPTH)))]
     max_depth: u32,
-    /// Samples of each pixel, on a regular grid: a square number up to 256
-    #[arg(long = "spp", value_name = "N", default_value = "1", value_parser = samples_per_side)]
-    samples_per_side: u32,
+    /// Samples of each pixel, up to 256; on a regular grid a square number
+    #[arg(long = "spp", value_name = "N", default_value = "1", value_parser = samples)]
+    samples: u32,
+    /// How the samples of a pixel are placed
+    #[arg(long, value_enum, default_value_t = PatternName::Grid)]
+    pattern: PatternName,
+    /// How samples are spread over the pixel and around it, with `--pattern fibonacci`
+    #[arg(long, value_enum, default_value_t = Filter::Box)]
+    filter: Filter,
     /// Picture size in place of the scene's RES
     #[arg(long, value_name = "WxH", value_parser = resolution)]
     res: Option<(u32, u32)>,
@@ -90,7 +106,25 @@ impl PictureOptions {
             secondary: self.secondary_epsilon.unwrap_or(base.secondary),
             specular: self.specular.unwrap_or(base.specular),
             max_depth: self.max_depth,
-            samples_per_side: self.samples_per_side,
+            pattern: self.pattern("--spp", self.samples)?,
+        })
+    }
+
+    /// The pattern with so many samples, which `option` asks for.
+    pub(super) fn pattern(&self, option: &str, count: u32) -> Result<Pattern, Failure> {
+        let pattern = match self.pattern {
+            PatternName::Grid if self.filter != Filter::Box => {
+                return Err(Failure::new(
+                    USAGE,
+                    "a regular grid has no --filter but the box\n  help: --pattern fibonacci",
+                ));
+            }
+            PatternName::Grid => Pattern::ONE,
+            PatternName::Fibonacci => Pattern::Fibonacci { count, filter: self.filter },
+        };
+        pattern.with_count(count).map_err(|why| {
+            let help = if pattern == Pattern::ONE { "\n  help: --pattern fibonacci takes any number" } else { "" };
+            Failure::new(USAGE, format!("{option} {count}: {why}{help}"))
         })
     }
 
@@ -271,9 +305,10 @@ fn secondary(text: &str) -> Result<Secondary, String> {
     }
 }
 
-/// The side of the grid of so many samples.
-pub(super) fn samples_per_side(text: &str) -> Result<u32, String> {
-    Settings::samples_per_side_of(text.parse().unwrap_or(0))
+/// A number of samples.
+pub(super) fn samples(text: &str) -> Result<u32, String> {
+    let count = text.parse().ok().filter(|count| (1..=Pattern::MAX_COUNT).contains(count));
+    count.ok_or_else(|| format!("expected a number from 1 to {}, of a grid a square number", Pattern::MAX_COUNT))
 }
 
 /// Three coordinates.

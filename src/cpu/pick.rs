@@ -35,8 +35,8 @@ pub fn picked(viewed: &ViewedScene, x: u32, y: u32) -> Option<PrimaryHit> {
         return None;
     }
     let camera = Camera::new(viewed);
-    let middle = camera.samples_per_side() / 2;
-    let sample = [x, y].map(|at| at * camera.samples_per_side() + middle);
+    let (side, [column, row]) = (camera.pattern().side(), camera.pattern().middle());
+    let sample = [x * side + column, y * side + row];
     let direction = camera.column(sample[0]) + camera.row(sample[1]);
     let ray = Ray::<f64> { origin: Vec3::ZERO, direction: Vec3::from_f64(direction) };
     // Few rays come so near to a tangent.

@@ -24,9 +24,9 @@ impl<T: Real> Reference<T> {
 
     /// The unclamped colour of a pixel, with each decision proven where `T` does so.
     pub(super) fn proven_color(&self, i: u32, j: u32, bound: &mut Bound<T, true>, tally: &mut Tally) -> Vec3<T> {
-        let side = self.camera.samples_per_side();
+        let count = self.camera.pattern().count();
         if !T::PROVES {
-            return resolve(self.primaries(i, j).map(|primary| trace(&self.world, &primary, tally)), side);
+            return resolve(self.primaries(i, j).map(|primary| trace(&self.world, &primary, tally)), count);
         }
         let (mut more_bits, mut undecided) = (false, false);
         let samples = self.primaries(i, j).map(|primary| {
@@ -46,7 +46,7 @@ impl<T: Real> Reference<T> {
             tally.hits = hits + decided.hits;
             color
         });
-        let color = resolve(samples, side);
+        let color = resolve(samples, count);
         tally.more_bits += u64::from(more_bits);
         tally.undecided += u64::from(undecided);
         color

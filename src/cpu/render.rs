@@ -94,12 +94,14 @@ impl<T: Real> Reference<T> {
         })
     }
 
-    /// The rays of all samples of pixel (column `i`, row `j`), row by row.
+    /// The rays of all samples of pixel (column `i`, row `j`), in the order of the pattern.
     pub(super) fn primaries(&self, i: u32, j: u32) -> impl Iterator<Item = Primary<'_, T>> {
-        let side = self.camera.samples_per_side();
+        let pattern = self.camera.pattern();
+        let (side, count) = (pattern.side(), pattern.count());
         let seen = self.world.accel.screen.at(i, j);
-        (0..side * side).map(move |s| {
-            let sample = [i * side + s % side, j * side + s / side];
+        (0..count).map(move |s| {
+            let [column, row] = pattern.sample_place(s);
+            let sample = [i * side + column, j * side + row];
             Primary { ray: self.primary_ray(sample), sample, seen }
         })
     }
@@ -155,7 +157,7 @@ impl<T: Real> Reference<T> {
     /// What a pixel shows.
     #[inline]
     fn shown(&self, i: u32, j: u32, bound: &mut Bound<T, true>, tally: &mut Tally) -> Shown {
-        let samples = u64::from(self.camera.samples_per_side() * self.camera.samples_per_side());
+        let samples = u64::from(self.camera.pattern().count());
         let before = tally.hits;
         let color = self.proven_color(i, j, bound, tally);
         let linear = Linear { color: color.to_f64(), coverage: (tally.hits - before) as f64 / samples as f64 };
@@ -197,19 +199,19 @@ impl<T: Real> Reference<T> {
     }
 }
 
-/// The mean over a pixel's samples, row by row, `side` of them in each; read it beside `shaders/resolve.wgsl`. Taken from
+/// The mean over a pixel's samples, `count` of them; read it beside `shaders/resolve.wgsl`. Taken from
 /// differences to the first sample, it is exact where all are equal.
 #[inline]
-pub(super) fn resolve<T: Real>(mut samples: impl Iterator<Item = Vec3<T>>, side: u32) -> Vec3<T> {
+pub(super) fn resolve<T: Real>(mut samples: impl Iterator<Item = Vec3<T>>, count: u32) -> Vec3<T> {
     let Some(first) = samples.next() else { return Vec3::ZERO };
     let mut excess = Vec3::ZERO;
     for color in samples {
         excess += color - first;
     }
-    if side == 1 {
+    if count == 1 {
         return first;
     }
-    let count = T::from_f64(f64::from(side * side));
+    let count = T::from_f64(f64::from(count));
     first + Vec3::new(excess.x / count, excess.y / count, excess.z / count)
 }
 

@@ -336,17 +336,17 @@ impl Variant {
 
     /// The unclamped colour that pixel (`i`, `j`) of the rendered picture has.
     fn rendered(&self, stage: &Stage, [i, j]: [i64; 2]) -> DVec3 {
-        let side = stage.camera.samples_per_side();
+        let pattern = stage.camera.pattern();
         let textbook = self.textbook(stage);
+        let ticks = pattern.ticks(self.rules.offset);
         let sample = |s: u32| {
-            let [across, down] = [s % side, s / side].map(f64::from);
-            let (dx, dy) = self.rules.offset;
-            let place = [i as f64 + (across + dx) / f64::from(side), j as f64 + (down + dy) / f64::from(side)];
+            let [across, down] = pattern.sample_place(s);
+            let place = [i as f64 + ticks[0].place(across), j as f64 + ticks[1].place(down)];
             textbook.color(self.direction(stage, place))
         };
         // As the reference takes the mean: exact where all samples are equal.
         let first = sample(0);
-        first + (1..side * side).map(|s| sample(s) - first).sum::<DVec3>() / f64::from(side * side)
+        first + (1..pattern.count()).map(|s| sample(s) - first).sum::<DVec3>() / f64::from(pattern.count())
     }
 
     /// The pixel of the rendered picture that pixel (`i`, `j`) shows; `None` where it shows none.

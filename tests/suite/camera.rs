@@ -12,6 +12,7 @@ use trueray::cpu::{Judge, Reference};
 use trueray::effects::{EffectSet, Effects, Request};
 use trueray::engine::Backend;
 use trueray::film::Picture;
+use trueray::pattern::{Filter, Pattern};
 use trueray::precision::Tier;
 use trueray::scene::{Fov, Scene, Window};
 use trueray::settings::{SampleOffset, Settings};
@@ -293,7 +294,14 @@ proptest! {
         flip in any::<[bool; 2]>(),
         (width, height) in (1_u32..200, 1_u32..150),
         sampling in prop::sample::select(vec![SampleOffset::Corner, SampleOffset::BottomLeft, SampleOffset::Center]),
-        samples in 1_u32..4,
+        pattern in prop::sample::select(vec![
+            Pattern::ONE,
+            Pattern::Grid { side: 2 },
+            Pattern::Grid { side: 3 },
+            Pattern::Fibonacci { count: 3, filter: Filter::Box },
+            Pattern::Fibonacci { count: 2, filter: Filter::Tent },
+            Pattern::Fibonacci { count: 4, filter: Filter::Gaussian },
+        ]),
         longest_tile in prop::sample::select(vec![0.0, 1.0, 1e9]),
         near in prop::sample::select(vec![1e-3, 0.1, 1.0, 2.0]),
     ) {
@@ -307,22 +315,22 @@ proptest! {
         let mut scene = scene_of(&(spheres.iter().map(line).collect::<String>() + "AMBIENT 1 1 1"));
         (scene.width, scene.height) = (width, height);
         scene.window.near = near;
-        let side = |low: f64, size: f64, flip| if flip { (low + size, low) } else { (low, low + size) };
-        (scene.window.left, scene.window.right) = side(window[0], size[0], flip[0]);
-        (scene.window.bottom, scene.window.top) = side(window[1], size[1], flip[1]);
-        let settings = Settings { sampling, samples_per_side: samples, view, ..Settings::classic() };
+        let ends = |low: f64, size: f64, flip| if flip { (low + size, low) } else { (low, low + size) };
+        (scene.window.left, scene.window.right) = ends(window[0], size[0], flip[0]);
+        (scene.window.bottom, scene.window.top) = ends(window[1], size[1], flip[1]);
+        let settings = Settings { sampling, pattern, view, ..Settings::classic() };
         let density = Density { longest_tile, ..Density::DEFAULT };
         let viewed = scene.viewed(&settings);
-        let camera = Camera::new(&viewed);
+        let (camera, side) = (Camera::new(&viewed), pattern.side());
 
         for rounding in [Rounding::SINGLE, Rounding::COMPENSATED, Rounding::DOUBLE] {
             let lists = Acceleration::with_density(&viewed, EffectSet::ALL, rounding, &density).screen;
-            for j in 0..height * samples {
-                for i in 0..width * samples {
+            for j in 0..height * side {
+                for i in 0..width * side {
                     let ray = camera.column(i) + camera.row(j);
                     for (index, sphere) in scene.spheres.iter().enumerate() {
                         if sees(ray, sphere) {
-                            let listed = lists.at(i / samples, j / samples);
+                            let listed = lists.at(i / side, j / side);
                             prop_assert!(listed.contains(&(index as u32)), "sample {i} {j} sphere {index}");
                         }
                     }

@@ -11,6 +11,7 @@ use trueray::cpu::{Dd, Decision, Finding, Judge, Real, Reference};
 use trueray::effects::{Effect, Effects, Request};
 use trueray::engine::Backend;
 use trueray::film::{Format, Picture, Target};
+use trueray::pattern::Pattern;
 use trueray::precision::{self, Selection, Tier};
 use trueray::scene::{Scene, parse};
 use trueray::settings::{Settings, Specular};
@@ -323,7 +324,8 @@ fn right_pictures_of_random_scenes_are_explained() {
     for seed in 0..count {
         let scene = random_scene(seed, width);
         for settings in conventions() {
-            let deep = Settings { samples_per_side: 2, specular: Specular::Blinn, max_depth: 5, ..settings };
+            let deep =
+                Settings { pattern: Pattern::Grid { side: 2 }, specular: Specular::Blinn, max_depth: 5, ..settings };
             let case = Case::new(&scene, if seed % 5 == 4 { &deep } else { &settings });
             let name = |what| format!("seed {seed}, {:?}, {what}", settings.sampling);
             let mut pictures = vec![

@@ -45,6 +45,7 @@ mod oracle;
 mod page;
 mod parse;
 mod parts;
+mod pattern;
 mod phong;
 mod pictures;
 mod pixel;

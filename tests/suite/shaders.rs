@@ -69,6 +69,7 @@ fn specialisation(variant: &Variant, effects: EffectSet, flags: usize) -> Specia
         sphere_count: 3,
         schedule,
         samples,
+        side: samples,
         slots,
         certified,
         linear: variant.samples && count_rays,

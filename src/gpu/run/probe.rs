@@ -299,6 +299,7 @@ impl<'a> Prober<'a> {
             count_rays: false,
             workgroup: 64,
             samples: 1,
+            side: 1,
             slots: Slots::Tiles,
             dispatch_tiles: 0,
         };

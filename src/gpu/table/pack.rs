@@ -74,10 +74,10 @@ fn pack<'a, L: Layout + 'a>(
         let index = indices.as_ref().as_ref().map_or(i as u32, |indices| indices[i]);
         shape_value(&ellipsoid(&scene.spheres[i], true_axes), index, true_axes)
     };
-    let [columns, rows] =
-        [scene.width, scene.height].map(|size| size.next_multiple_of(TILE) * settings.samples_per_side);
+    let [columns, rows] = [scene.width, scene.height].map(|size| size.next_multiple_of(TILE) * settings.pattern.side());
     let places = columns + rows;
-    let place = move |i: u32| if i < columns { camera.column(i) } else { camera.row(i - columns) };
+    let rays = camera.clone();
+    let place = move |i: u32| if i < columns { rays.column(i) } else { rays.row(i - columns) };
     let window = move |i: usize| match (i as u32).checked_sub(places) {
         None => place(i as u32),
         Some(i) => residual::<L>(place(i)),
