@@ -24,6 +24,9 @@ override CERTIFIED: bool = false;
 override SAMPLES: u32 = 1u;
 override SIDE: u32 = 1u;
 
+// Primary rays begin on the window, and all have the same direction, instead of coming from the eye.
+override PARALLEL: bool = false;
+
 // Each pixel also says its colour before that is quantised, and how many of its samples hit something.
 override LINEAR: bool = false;
 

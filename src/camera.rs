@@ -15,10 +15,13 @@ pub const NEAR_T_MIN: f64 = 1.0 + 1e-6;
 /// Windows whose greatest coordinate lies within this range are as far away as a ray's direction is long.
 const COMMON_WINDOW: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
 
-/// Positions of all sample columns and rows on the image plane. The ray of the sample in column i and row j is
+/// Positions of all sample columns and rows on the image plane. In a perspective picture the ray of the sample in column i and row j is
 /// τ·(`column(i)` + `row(j)`), not normalised: `x(i)` to the right, `y(j)` upwards and `near` along the view, each times a
 /// power of two, [`Camera::stretch`], which keeps squares of directions within the range of `f32` for windows of any size. So
 /// τ·`stretch` = 1 lies on the image plane; it is 1 for usual windows.
+///
+/// In an orthographic one it is `column(i)` + `row(j)` + τ·[`direction`](Camera::direction): from the window's point at the eye's depth
+/// along the view, times the same power of two, so that the image plane is where it was.
 ///
 /// In a grid of k × k samples each pixel is cut into k × k equal cells, and each cell has one sample where the
 /// convention places it: with centre sampling in the middle of the cell, at offsets (s + ½)/k from the pixel's left and
@@ -58,25 +61,49 @@ impl Camera {
             stretch: 1.0,
         };
         let greatest = camera.beyond_edges().into_iter().map(f64::abs).fold(camera.greatest, f64::max);
-        let stretch = if COMMON_WINDOW.contains(&greatest) { 1.0 } else { reciprocal_power_of_two(greatest) };
+        let longest = if camera.view.is_parallel() { camera.near() } else { greatest };
+        let stretch = if COMMON_WINDOW.contains(&longest) { 1.0 } else { reciprocal_power_of_two(longest) };
         Self { greatest, stretch, ..camera }
     }
 
-    /// What sample column `i` gives to the direction of its rays, in the axes of the world.
+    /// What sample column `i` gives to the direction of its rays, or to where they begin, in the axes of the world.
     pub fn column(&self, i: u32) -> DVec3 {
         let [right, _, _] = self.view.axes();
-        right * (self.x(i) * self.stretch)
+        if self.is_parallel() { right * self.x(i) } else { right * (self.x(i) * self.stretch) }
     }
 
-    /// What sample row `j` gives to the direction of its rays, in the axes of the world.
+    /// What sample row `j` gives to the direction of its rays, or to where they begin, in the axes of the world.
     pub fn row(&self, j: u32) -> DVec3 {
         let [_, up, back] = self.view.axes();
-        up * (self.y(j) * self.stretch) - back * (self.near() * self.stretch)
+        if self.is_parallel() {
+            up * self.y(j)
+        } else {
+            up * (self.y(j) * self.stretch) - back * (self.near() * self.stretch)
+        }
     }
 
-    /// How far the direction of a ray may be off, as an angle, where column, row and their sum are rounded to `unit`; before, they are
-    /// calculated in `f64`.
+    /// Whether rays begin on the window, and all have the same direction.
+    pub fn is_parallel(&self) -> bool {
+        self.view.is_parallel()
+    }
+
+    /// The way along the view to the image plane, as long as directions are.
+    pub fn direction(&self) -> DVec3 {
+        let [_, _, back] = self.view.axes();
+        -back * (self.near() * self.stretch)
+    }
+
+    /// How far the place where a ray begins may be off, where column, row and their sum are rounded to `unit`; before, they are calculated in
+    /// `f64`.
+    pub fn position_error(&self, unit: f64) -> f64 {
+        if self.is_parallel() { (3.5 * unit + 20.0 * 0.5 * f64::EPSILON) * self.greatest() } else { 0.0 }
+    }
+
+    /// How far the direction of a ray may be off, as an angle, likewise.
     pub fn direction_error(&self, unit: f64) -> f64 {
+        if self.is_parallel() {
+            return 2.0 * unit + 20.0 * 0.5 * f64::EPSILON;
+        }
         // Column and row are at right angles.
         2.5 * unit + 20.0 * 0.5 * f64::EPSILON * self.greatest() / self.near()
     }

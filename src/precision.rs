@@ -194,12 +194,12 @@ impl Demand {
         let count = scene.spheres.len();
         let chunk = |chunk: usize| {
             let mut demand = Self::none();
-            (chunk * CHUNK..count.min((chunk + 1) * CHUNK)).for_each(|index| demand.add(scene, effects, reach, index));
+            (chunk * CHUNK..count.min((chunk + 1) * CHUNK)).for_each(|index| demand.add(viewed, effects, reach, index));
             demand
         };
         let demand = (0..count.div_ceil(CHUNK)).into_par_iter().map(chunk).reduce(Self::none, |a, b| a.and(&b));
         Self {
-            share: Shares::new(scene, viewed.settings().view.axes(), effects).estimate(&nested(scene)),
+            share: Shares::new(scene, &viewed.settings().view, effects).estimate(&nested(scene)),
             brightness: Extreme { value: brightness.greatest(), sphere: brightness.sphere },
             ..demand
         }
@@ -220,7 +220,8 @@ impl Demand {
     }
 
     /// What a sphere demands by itself.
-    fn add(&mut self, scene: &Scene, effects: &Effects, reach: f64, index: usize) {
+    fn add(&mut self, viewed: &ViewedScene, effects: &Effects, reach: f64, index: usize) {
+        let (scene, is_parallel) = (viewed.scene(), viewed.settings().view.is_parallel());
         let sphere = &scene.spheres[index];
         let scale = sphere.scale.abs();
         let (short, long) = (scale.min_element(), scale.max_element());
@@ -241,7 +242,10 @@ impl Demand {
                 self.nearness.lower(height.abs() * short / coordinates, index);
             }
         };
-        add_nearness(DVec3::ZERO);
+        // Where rays are parallel none begins at the eye, and what is near the plane where they begin is cut away.
+        if !is_parallel {
+            add_nearness(DVec3::ZERO);
+        }
         if effects.set.has(Effect::Shadows) {
             for light in &scene.lights {
                 add_nearness(light.position);

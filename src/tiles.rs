@@ -27,6 +27,13 @@ impl Bounds {
         let [half_x, half_y, half_z] = axes.map(|axis| axis * semi_axes);
         let near = camera.near();
         let depth = half_z.length();
+        if camera.is_parallel() {
+            let (half_x, half_y) = (half_x.length(), half_y.length());
+            let is_seen = !(z - depth > -near);
+            let columns = Pixels::across(camera).between([x - half_x, x + half_x].map(|x| camera.column_of(x)));
+            let rows = Pixels::down(camera).between([y - half_y, y + half_y].map(|y| camera.row_of(y)));
+            return is_seen.then_some(Self { columns: columns?, rows: rows?, outline: None });
+        }
         let across = slopes([x, z], [half_x, half_z], depth, near)?;
         let down = slopes([y, z], [half_y, half_z], depth, near)?;
         let columns = columns_between(across, camera)?;

@@ -13,6 +13,7 @@ use crate::pattern::{Filter, Pattern};
 use crate::precision::{self, Selection, Tier};
 use crate::scene::{Fov, Scene, resolution};
 use crate::settings::{Convention, Quantize, SampleOffset, Secondary, Settings, Specular};
+use crate::view::Projection;
 #[cfg(feature = "view")]
 use crate::view::View;
 use crate::viewed::ViewedScene;
@@ -87,13 +88,16 @@ struct CameraOptions {
     /// LEFT, RIGHT, BOTTOM and TOP
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
     fov: Option<Fov>,
+    /// Whether rays come from the eye or are parallel: an orthographic picture shows the window's own width and height of the world
+    #[arg(long, value_enum, default_value_t = Projection::Perspective)]
+    projection: Projection,
 }
 
 impl PictureOptions {
     /// Where the eye is.
     pub(super) fn placement(&self) -> Placement {
-        let CameraOptions { eye, look_at, up, fov } = self.camera;
-        Placement { eye, look_at, up, fov }
+        let CameraOptions { eye, look_at, up, fov, projection } = self.camera;
+        Placement { eye, look_at, up, fov, projection }
     }
 
     /// Fails where the camera options define no view.
@@ -132,7 +136,13 @@ impl PictureOptions {
     #[cfg(feature = "view")]
     pub(super) fn view_state(&self, scene: &Scene, precision: precision::Request) -> Result<ViewState, Failure> {
         let settings = self.settings()?;
-        let CameraOptions { eye, look_at, up, fov } = self.camera;
+        let CameraOptions { eye, look_at, up, fov, projection } = self.camera;
+        if projection == Projection::Orthographic {
+            return Err(Failure::new(
+                USAGE,
+                "the live view is perspective only\n  help: trueray render --projection orthographic",
+            ));
+        }
         let pose =
             look_at.map_or_else(|| Pose::ahead(eye, up, FlightScale::of(scene)), |look_at| Pose { eye, look_at, up });
         let pose = (settings.view != View::FILE).then_some(pose);

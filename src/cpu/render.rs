@@ -55,8 +55,16 @@ impl<T: Real> Reference<T> {
 
     /// The ray of the sample in sample column `i` and sample row `j`.
     fn primary_ray(&self, [i, j]: [u32; 2]) -> Ray<T> {
-        let direction = Vec3::from_f64(self.camera.column(i)) + Vec3::from_f64(self.camera.row(j));
-        Ray { origin: Vec3::ZERO, direction }
+        let sum = Vec3::from_f64(self.camera.column(i)) + Vec3::from_f64(self.camera.row(j));
+        if self.camera.is_parallel() {
+            return Ray { origin: sum, direction: Vec3::from_f64(self.camera.direction()) };
+        }
+        Ray { origin: Vec3::ZERO, direction: sum }
+    }
+
+    /// How far its origin may be off, and its direction as an angle.
+    pub(super) fn errors(&self) -> [T; 2] {
+        [self.camera.position_error(T::UNIT), self.camera.direction_error(T::UNIT)].map(T::from_f64)
     }
 
     /// Width and height of the picture.
@@ -82,7 +90,7 @@ impl<T: Real> Reference<T> {
         let (width, height) = self.size();
         let primary = (i < width && j < height).then(|| self.primaries(i, j).next()).flatten()?;
         let mut bound = Bound::<T, false>::new(&self.world);
-        bound.begin(T::from_f64(self.camera.direction_error(T::UNIT)));
+        bound.begin(self.errors());
         let color = trace(&self.world, &primary, &mut bound);
         let levels = Levels::new(self.quantize);
         let is_step = !bound.has_sure_levels(color, &levels, T::from_f64(others));

@@ -108,7 +108,8 @@ impl Found<'_> {
 
     fn settings(&mut self, settings: &Settings) {
         if settings.view != crate::view::View::FILE {
-            let what = "a scene is exported with the camera of its file: leave --eye, --look-at and --up out";
+            let what =
+                "a scene is exported with the camera of its file: leave --eye, --look-at, --up and --projection out";
             self.obstacles.push(Obstacle::Settings(what.into()));
         }
         if settings.pattern.count() > 1 {

@@ -8,7 +8,7 @@ use super::rules::{
     AmbientCount, Behind, Clamp, Fading, Mirror, Near, NegativeCosine, Normal, Rules, Shadow, SpecularFactor, ToLight,
     ToViewer, Winner,
 };
-use super::textbook::Textbook;
+use super::textbook::{Ray, Textbook};
 use super::world::World;
 use crate::camera::Camera;
 use crate::effects::{Effect, EffectSet, Effects};
@@ -319,8 +319,8 @@ impl Variant {
         }
     }
 
-    /// The direction of the ray through a place of the rendered picture, in samples from its top left corner.
-    fn direction(&self, stage: &Stage, [x, y]: [f64; 2]) -> DVec3 {
+    /// The ray through a place of the rendered picture, in samples from its top left corner.
+    fn ray(&self, stage: &Stage, [x, y]: [f64; 2]) -> Ray {
         let camera = &stage.camera;
         let [right, up, back] = camera.axes();
         let across = |at: f64, size: u32, count: u32| {
@@ -331,7 +331,11 @@ impl Variant {
         let x = camera.x_at(across(x, self.size[0], camera.width()));
         let y = camera.y_at(across(y, self.size[1], camera.height()));
         let near = if self.rules.near_is_one { stage.unit } else { camera.near() };
-        (right * x + up * y - back * near) * camera.stretch()
+        let (point, ahead) = (right * x + up * y, back * near);
+        if camera.is_parallel() {
+            return Ray { origin: point, direction: -ahead * camera.stretch() };
+        }
+        Ray { origin: DVec3::ZERO, direction: (point - ahead) * camera.stretch() }
     }
 
     /// The unclamped colour that pixel (`i`, `j`) of the rendered picture has.
@@ -342,7 +346,7 @@ impl Variant {
         let sample = |s: u32| {
             let [across, down] = pattern.sample_place(s);
             let place = [i as f64 + ticks[0].place(across), j as f64 + ticks[1].place(down)];
-            textbook.color(self.direction(stage, place))
+            textbook.color(&self.ray(stage, place))
         };
         // As the reference takes the mean: exact where all samples are equal.
         let first = sample(0);
@@ -373,7 +377,7 @@ impl Variant {
     pub(super) fn seen(&self, stage: &Stage, pixel: [u32; 2]) -> Option<usize> {
         let [x, y] = self.source(stage, pixel)?.map(|place| place as f64);
         let (dx, dy) = self.rules.offset;
-        self.textbook(stage).seen(self.direction(stage, [x + dx, y + dy]))
+        self.textbook(stage).seen(&self.ray(stage, [x + dx, y + dy]))
     }
 
     /// Whether `levels` may be what pixel (`i`, `j`) shows: but for rounding, or to the last bit.

@@ -16,7 +16,7 @@ use trueray::pattern::{Filter, Pattern};
 use trueray::precision::Tier;
 use trueray::scene::{Fov, Scene, Window};
 use trueray::settings::{SampleOffset, Settings};
-use trueray::view::{View, ViewError};
+use trueray::view::{Projection, View, ViewError};
 
 use crate::support::{cpu_picture, gpu, gpu_picture, scaled, scene_of};
 
@@ -304,8 +304,10 @@ proptest! {
         ]),
         longest_tile in prop::sample::select(vec![0.0, 1.0, 1e9]),
         near in prop::sample::select(vec![1e-3, 0.1, 1.0, 2.0]),
+        projection in prop::sample::select(vec![Projection::Perspective, Projection::Orthographic]),
     ) {
         let Ok(view) = View::new(DVec3::ZERO, Some(ahead.into()), up.into()) else { return Ok(()) };
+        let view = view.projected(projection);
         // The places above are those in the picture's axes, so that the spheres are mostly in view.
         let [right, upwards, back] = view.axes();
         let line = |(p, s): &([f64; 3], [f64; 3])| {
@@ -327,9 +329,10 @@ proptest! {
             let lists = Acceleration::with_density(&viewed, EffectSet::ALL, rounding, &density).screen;
             for j in 0..height * side {
                 for i in 0..width * side {
-                    let ray = camera.column(i) + camera.row(j);
+                    let sum = camera.column(i) + camera.row(j);
+                    let (start, ray) = if camera.is_parallel() { (sum, camera.direction()) } else { (DVec3::ZERO, sum) };
                     for (index, sphere) in scene.spheres.iter().enumerate() {
-                        if sees(ray, sphere) {
+                        if sees(start, ray, sphere) {
                             let listed = lists.at(i / side, j / side);
                             prop_assert!(listed.contains(&(index as u32)), "sample {i} {j} sphere {index}");
                         }
@@ -348,9 +351,9 @@ proptest! {
     }
 }
 
-/// Whether a ray from the eye meets the sphere at t ≥ 1.
-fn sees(ray: DVec3, sphere: &trueray::scene::Sphere) -> bool {
-    let (s, d) = (sphere.center / sphere.scale, ray / sphere.scale);
+/// Whether a ray from this place meets the sphere at t ≥ 1.
+fn sees(start: DVec3, ray: DVec3, sphere: &trueray::scene::Sphere) -> bool {
+    let (s, d) = ((sphere.center - start) / sphere.scale, ray / sphere.scale);
     let (a, b, c) = (d.length_squared(), s.dot(d), s.length_squared() - 1.0);
     let discriminant = b * b - a * c;
     discriminant >= 0.0 && b + discriminant.sqrt() >= a

@@ -51,6 +51,7 @@ mod pictures;
 mod pixel;
 #[cfg(feature = "view")]
 mod preview;
+mod projection;
 mod proof;
 mod rays;
 mod refraction;

@@ -15,6 +15,7 @@ use trueray::gpu::{Choice, Gpu};
 use trueray::precision::Tier;
 use trueray::scene::{Scene, Window, parse};
 use trueray::settings::Settings;
+use trueray::view::Projection;
 
 /// Compiling is what tests with a device take most of their time for: they share as many kernels as there are.
 pub(crate) const KEPT: NonZero<usize> = NonZero::new(400).unwrap();
@@ -131,6 +132,20 @@ pub(crate) fn cpu_picture<T: Real>(scene: &Scene, settings: &Settings, effects: 
     let mut rgb = vec![0; scene.width as usize * scene.height as usize * 3];
     let tally = Reference::<T>::new(&scene.viewed(settings), effects).rows(0, &mut rgb).unwrap();
     (picture(scene, rgb), tally.not_finite)
+}
+
+/// The settings with parallel rays.
+pub(crate) fn orthographic(settings: Settings) -> Settings {
+    Settings { view: settings.view.projected(Projection::Orthographic), ..settings }
+}
+
+/// The scene with a window for parallel rays: as large as what an eye sees at the depth of the first sphere.
+pub(crate) fn widened(mut scene: Scene) -> Scene {
+    let Window { near, left, right, bottom, top } = scene.window;
+    let depth = scene.spheres.first().map_or(near, |sphere| sphere.center.z.abs().max(sphere.scale.max_element()));
+    let [left, right, bottom, top] = [left, right, bottom, top].map(|edge| edge / near * depth);
+    scene.window = Window { near, left, right, bottom, top };
+    scene
 }
 
 /// A scene with its reference and the reference's picture.

@@ -38,6 +38,8 @@ pub struct Specialisation {
     /// Samples of a pixel, and how many columns of them it has.
     pub samples: u32,
     pub side: u32,
+    /// Whether primary rays are parallel.
+    pub parallel: bool,
     /// Which pixels a dispatch renders.
     pub slots: Slots,
     /// Whether pixels say where rounding could decide what they show.
@@ -70,6 +72,7 @@ impl Specialisation {
             schedule: Schedule::InPlace,
             samples: settings.pattern.count(),
             side: settings.pattern.side(),
+            parallel: settings.view.is_parallel(),
             slots: Slots::Tiles,
             certified: false,
             linear: false,
@@ -140,6 +143,7 @@ impl Specialisation {
             ("BLINN", f64::from(self.blinn)),
             ("SAMPLES", f64::from(self.samples)),
             ("SIDE", f64::from(self.side)),
+            ("PARALLEL", f64::from(self.parallel)),
             ("COUNT_RAYS", f64::from(self.count_rays)),
             ("TANGENTS", f64::from(self.kernel.tells_tangents())),
             ("CERTIFIED", f64::from(self.certified)),

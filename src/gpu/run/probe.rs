@@ -300,6 +300,7 @@ impl<'a> Prober<'a> {
             workgroup: 64,
             samples: 1,
             side: 1,
+            parallel: false,
             slots: Slots::Tiles,
             dispatch_tiles: 0,
         };
