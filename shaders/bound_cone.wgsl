@@ -60,7 +60,7 @@ fn stretch_of(body: Body) -> real {
 
 // A sample's primary ray.
 fn begin_bound() {
-    bound_position = real(0.0);
+    bound_position = params.position_error;
     bound_direction = params.direction_error;
     bound_weight = real(1.0);
     bound_color = real(0.0);

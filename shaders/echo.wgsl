@@ -54,6 +54,7 @@ fn echo_layout() {
     echo(params.light_allowance);
     echo(params.background_levels);
     echo(params.moved);
+    echo(params.position_error);
     for (var i = 0u; i < 2u; i++) {
         echo3(shape_of(i).center_radius.xyz);
         echo(shape_of(i).center_radius.w);

@@ -20,8 +20,12 @@ override TANGENTS: bool = false;
 // Pixels say where rounding could decide anything that they show.
 override CERTIFIED: bool = false;
 
-// Side of the grid of samples in each pixel.
+// Samples of each pixel, and columns of them: the side of a grid, or as many as there are samples.
 override SAMPLES: u32 = 1u;
+override SIDE: u32 = 1u;
+
+// Primary rays begin on the window, and all have the same direction, instead of coming from the eye.
+override PARALLEL: bool = false;
 
 // Each pixel also says its colour before that is quantised, and how many of its samples hit something.
 override LINEAR: bool = false;

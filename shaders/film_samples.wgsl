@@ -23,18 +23,17 @@ fn finish(slot: u32, color: vec3r) {
     colors[slot] = vec4r(color, status);
 }
 
-// Row by row in the pixel.
 fn trace_pixel(pixel: vec2<u32>, first_slot: u32) {
     var sample = 0u;
     loop {
         trace(pixel, first_slot, sample);
         sample++;
-        if sample == SAMPLES * SAMPLES {
+        if sample == SAMPLES {
             break;
         }
     }
     // The first that was left out stands for all: it has no path that could finish it later.
-    if sample < SAMPLES * SAMPLES {
+    if sample < SAMPLES {
         is_cut = true;
         keep_status(first_slot + sample, false);
         finish(first_slot + sample, vec3r());

@@ -1,5 +1,5 @@
 // Rays whose places are plain vectors.
-// needs: real, scene, types
+// needs: effects, real, scene, types
 
 // A place in the world.
 alias Point = vec3r;
@@ -34,7 +34,11 @@ fn ray_from(origin: Point, direction: vec3r) -> Ray {
 }
 
 fn primary_ray(pixel: vec2<u32>) -> Ray {
-    return ray_from(vec3r(), window_at(pixel.x) + window_at(params.window_rows + pixel.y));
+    let sum = window_at(pixel.x) + window_at(params.window_rows + pixel.y);
+    if PARALLEL {
+        return ray_from(sum, window_at(params.window_low - 1u));
+    }
+    return ray_from(vec3r(), sum);
 }
 
 // From a point to the light with this index, which lies at t = 1.

@@ -1,5 +1,5 @@
 // Rays whose places and directions carry what rounding took from them.
-// needs: eft, real, scene, types
+// needs: effects, eft, real, scene, types
 
 // A place in the world.
 alias Point = Pair3;
@@ -41,8 +41,11 @@ fn primary_ray(pixel: vec2<u32>) -> Ray {
     let low = params.window_low;
     let sum = two_sum3(window_at(column), window_at(row));
     // Where the sum cancels, the low parts may be the greater.
-    let direction = two_sum3(sum.hi, sum.lo + (window_at(low + column) + window_at(low + row)));
-    return ray_with(Point(vec3r(), vec3r()), direction);
+    let place = two_sum3(sum.hi, sum.lo + (window_at(low + column) + window_at(low + row)));
+    if PARALLEL {
+        return ray_with(place, Pair3(window_at(low - 1u), window_at(low + low - 1u)));
+    }
+    return ray_with(Point(vec3r(), vec3r()), place);
 }
 
 // From a point to the light with this index, which lies at t = 1.

@@ -7,20 +7,20 @@
 // With LINEAR, the mean of each pixel, and the part of its samples that hit something.
 @group(0) @binding(20) var<storage, read_write> means: array<vec4r>;
 
-// Row by row, unclamped; read it beside src/cpu/render.rs. Taken from differences to the first sample, it is exact where all
+// Unclamped; read it beside src/cpu/render.rs. Taken from differences to the first sample, it is exact where all
 // are equal.
 @compute @workgroup_size(TILE_PIXELS)
 fn resolve(@builtin(global_invocation_id) id: vec3<u32>) {
     params = given_params;
-    let first = colors[id.x * SAMPLES * SAMPLES];
+    let first = colors[id.x * SAMPLES];
     var excess = vec3r();
     var status = u32(first.w) & 255u;
     var hits = u32(first.w) / STATUS_HIT;
     var is_whole = true;
     // A sample that was cut stands for those that follow.
     var is_cut = (status & STATUS_CUT) != 0u;
-    for (var sample = 1u; sample < SAMPLES * SAMPLES; sample++) {
-        let color = colors[id.x * SAMPLES * SAMPLES + sample];
+    for (var sample = 1u; sample < SAMPLES; sample++) {
+        let color = colors[id.x * SAMPLES + sample];
         excess += color.xyz - first.xyz;
         let own = u32(color.w) & 255u;
         hits += u32(color.w) / STATUS_HIT;
@@ -30,9 +30,9 @@ fn resolve(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     // No dispatch is number 0.
     status &= select(STATUS_FLAGS, 255u, is_whole);
-    let mean = first.xyz + excess / real(SAMPLES * SAMPLES);
+    let mean = first.xyz + excess / real(SAMPLES);
     pixels[id.x] = levels(mean) | (status << 24u);
     if LINEAR {
-        means[id.x] = vec4r(mean, real(hits) / real(SAMPLES * SAMPLES));
+        means[id.x] = vec4r(mean, real(hits) / real(SAMPLES));
     }
 }

@@ -20,5 +20,5 @@ fn dispatch_bits() -> u32 {
 fn trace_samples(@builtin(global_invocation_id) id: vec3<u32>) {
     params = given_params;
     load_lights();
-    trace_pixel(list.pixels[id.x], id.x * SAMPLES * SAMPLES);
+    trace_pixel(list.pixels[id.x], id.x * SAMPLES);
 }

@@ -33,5 +33,5 @@ fn trace_tiles(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocatio
     let row = word >> tiles.column_bits;
     let tile = vec2(word - (row << tiles.column_bits), tiles.first_row + row);
     let place = place_in_tile(index);
-    trace_pixel(tile * TILE + place, (group.x * TILE_PIXELS + place.y * TILE + place.x) * SAMPLES * SAMPLES);
+    trace_pixel(tile * TILE + place, (group.x * TILE_PIXELS + place.y * TILE + place.x) * SAMPLES);
 }

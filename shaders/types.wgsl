@@ -49,8 +49,10 @@ struct Params {
     light_allowance: real,
     // the levels of the background, as a number;
     background_levels: real,
-    // and what rounding takes of all places when the eye is moved to the origin.
+    // what rounding takes of all places when the eye is moved to the origin;
     moved: real,
+    // and the error of a primary ray's origin.
+    position_error: real,
 }
 
 // What the intersection reads of a sphere.

@@ -72,8 +72,8 @@ impl Decimal {
     }
 }
 
-impl From<u32> for Decimal {
-    fn from(x: u32) -> Self {
+impl From<i64> for Decimal {
+    fn from(x: i64) -> Self {
         Self { digits: x.into(), exponent: 0 }
     }
 }

@@ -29,8 +29,14 @@ fn unseen(scene: &Scene, settings: &Settings) -> Option<String> {
     let is_beyond = |sphere: &&Sphere| !(reach(sphere, -back) < near);
     // Inwards from each edge of the window, whichever of two edges is the greater.
     let edges = [(right, left.min(end)), (-right, -left.max(end)), (up, bottom.min(top)), (-up, -bottom.max(top))];
-    let inwards = edges.map(|(axis, edge)| axis * near + back * edge);
-    let is_within = |sphere: &&Sphere| inwards.iter().all(|&normal| !(reach(sphere, normal) < 0.0));
+    let is_inwards = |sphere: &Sphere, (axis, edge): (DVec3, f64)| {
+        if settings.view.is_parallel() {
+            !(reach(sphere, axis) < edge)
+        } else {
+            !(reach(sphere, axis * near + back * edge) < 0.0)
+        }
+    };
+    let is_within = |sphere: &&Sphere| edges.iter().all(|&edge| is_inwards(sphere, edge));
     let spheres = || scene.spheres.iter();
     let why = if !spheres().any(|sphere| is_ahead(&sphere)) {
         "every sphere is behind the eye; it looks along -Z where no --look-at turns it"

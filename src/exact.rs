@@ -9,9 +9,10 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::camera::Camera;
-use crate::cpu::{Dd, Vec3};
+use crate::cpu::{Dd, Ray, Vec3};
 use crate::decimal::Decimal;
 use crate::geometry::Ellipsoid;
+use crate::pattern::Ticks;
 use crate::scene::Sphere;
 use crate::viewed::ViewedScene;
 
@@ -26,13 +27,19 @@ pub struct TangentMargin {
     window: f64,
     /// The least length of a ray's direction.
     shortest: f64,
+    /// The greatest coordinate of where rays begin, where these are parallel.
+    start: f64,
 }
 
 impl TangentMargin {
     /// For rays from the eye of `viewed` in arithmetic with this unit roundoff.
     pub fn new(viewed: &ViewedScene, unit: f64) -> Self {
         let (eye, camera) = (viewed.eye_distance(), Camera::new(viewed));
-        Self { unit, eye, window: camera.greatest() * camera.stretch(), shortest: camera.near() * camera.stretch() }
+        let shortest = camera.near() * camera.stretch();
+        if camera.is_parallel() {
+            return Self { unit, eye, window: shortest, shortest, start: camera.greatest() };
+        }
+        Self { unit, eye, window: camera.greatest() * camera.stretch(), shortest, start: 0.0 }
     }
 
     /// Of a ray that passes at `perpendicular` from the centre of a sphere, which is at `distance` from the eye, all in its object
@@ -41,7 +48,8 @@ impl TangentMargin {
     /// A direction is good to 16 u of the window's greatest coordinate (edge, difference, quotient, product, sum, and the turn
     /// into the world); S' to 4 u of itself and, since centre and eye are rounded, 2 u of the eye's distance; and the steps to the
     /// closest point, where an error along the ray does not count, to 4 u more. The square of the distance moves by twice what
-    /// the distance does; the radius and the last operations add less than 40 u.
+    /// the distance does; the radius and the last operations add less than 40 u. Where rays begin on the window, that place is good to
+    /// 16 u of the greatest coordinate there, and S' takes two roundings of it more.
     pub fn of(&self, perpendicular: f64, distance: f64, stretch: f64, length: f64) -> f64 {
         let moved = self.moved(distance, stretch, length);
         moved * (2.0 * perpendicular + moved) + 40.0 * self.unit
@@ -49,7 +57,7 @@ impl TangentMargin {
 
     fn moved(&self, distance: f64, stretch: f64, length: f64) -> f64 {
         let distance = distance + 2.0 * self.eye * stretch;
-        self.unit * distance * (8.0 + 32.0 * self.window * stretch / length)
+        self.unit * distance * (8.0 + 32.0 * self.window * stretch / length) + self.unit * 40.0 * self.start * stretch
     }
 
     /// The greatest margin of a ray that may touch one of these, whose radii are in [1, 2).
@@ -59,8 +67,8 @@ impl TangentMargin {
 
     /// That of a ray that may touch this one.
     pub(crate) fn greatest(&self, e: Ellipsoid) -> f64 {
-        let distance = (e.center * e.inv_scale).length();
         let [most, least] = [e.inv_scale.max_element(), e.inv_scale.min_element()];
+        let distance = (e.center * e.inv_scale).length() + 2.0 * self.start * most;
         // Where |perpendicular|² − r² is within the margin, |perpendicular| is below 2.1 and 2.5 times what it moves.
         let moved = self.moved(distance, most, least * self.shortest);
         16.0 * (moved + moved * moved) + 40.0 * self.unit
@@ -76,6 +84,8 @@ pub struct ExactCamera {
     across: Edges,
     down: Edges,
     near: Decimal,
+    /// Whether rays begin on the window, and all have the same direction.
+    is_parallel: bool,
 }
 
 /// Where the samples of a row or of a column lie.
@@ -85,23 +95,23 @@ struct Edges {
     first: Decimal,
     /// What the other edge adds.
     size: Decimal,
-    /// Samples between them.
+    /// Steps between them.
     count: Decimal,
-    /// Where in its cell a sample lies.
-    offset: Decimal,
+    /// How many of these each sample lies from the first.
+    ticks: Ticks,
 }
 
 impl Edges {
-    fn new([first, last]: [f64; 2], count: [u32; 2], offset: f64) -> Self {
-        let [first, last, offset] = [first, last, offset].map(Decimal::shortest);
-        let [pixels, samples] = count.map(Decimal::from);
-        Self { size: &last - &first, first, count: &pixels * &samples, offset }
+    fn new(ends: [f64; 2], pixels: u32, ticks: Ticks) -> Self {
+        let [first, last] = ends.map(Decimal::shortest);
+        let count = Decimal::from(i64::from(pixels) * i64::from(ticks.steps()));
+        Self { size: &last - &first, first, count, ticks }
     }
 
-    /// The place of the sample with this index, times their count.
+    /// The place of the sample with this index, times the count of steps.
     fn place(&self, index: u32) -> Decimal {
-        let Self { first, size, count, offset } = self;
-        &(first * count) + &(size * &(&Decimal::from(index) + offset))
+        let Self { first, size, count, ticks } = self;
+        &(first * count) + &(size * &Decimal::from(ticks.steps_to(index)))
     }
 }
 
@@ -109,47 +119,69 @@ impl ExactCamera {
     /// Of the scene as the file has it.
     pub fn new(viewed: &ViewedScene) -> Self {
         let (scene, settings) = viewed.in_file();
-        let (window, side) = (scene.window, settings.samples_per_side);
-        let (x, y) = settings.sampling.offset();
+        let window = scene.window;
+        let [across, down] = settings.pattern.ticks(settings.sampling.offset());
         Self {
             eye: vector(settings.view.eye),
             axes: settings.view.axes().map(vector),
-            across: Edges::new([window.left, window.right], [scene.width, side], x),
-            down: Edges::new([window.top, window.bottom], [scene.height, side], y),
+            across: Edges::new([window.left, window.right], scene.width, across),
+            down: Edges::new([window.top, window.bottom], scene.height, down),
             near: Decimal::shortest(window.near),
+            is_parallel: settings.view.is_parallel(),
         }
     }
 
-    /// The way to the image plane along the ray of the sample in this column and row of samples, times the counts of both.
-    fn direction(&self, [column, row]: [u32; 2]) -> [Decimal; 3] {
+    /// What all is multiplied by: the counts of steps in both directions.
+    fn count(&self) -> Decimal {
+        &self.across.count * &self.down.count
+    }
+
+    /// The point of the window at the eye's depth, seen from the eye, of the sample in this column and row of samples, and from there the
+    /// way to the image plane along the view; times the count.
+    fn window(&self, [column, row]: [u32; 2]) -> [[Decimal; 3]; 2] {
         let Self { across, down, near, .. } = self;
         let x = &across.place(column) * &down.count;
         let y = &down.place(row) * &across.count;
-        let z = near * &(&across.count * &down.count);
+        let z = near * &self.count();
         let [right, up, back] = &self.axes;
-        std::array::from_fn(|axis| &(&(&right[axis] * &x) + &(&up[axis] * &y)) - &(&back[axis] * &z))
+        let point = std::array::from_fn(|axis| &(&right[axis] * &x) + &(&up[axis] * &y));
+        [point, std::array::from_fn(|axis| &Decimal::default() - &(&back[axis] * &z))]
     }
 
-    /// Likewise in double-double, of the length that 2ᵏ image planes' distance has.
-    fn direction_in_dd(&self, sample: [u32; 2], k: i32) -> Vec3<Dd> {
-        let count = (&self.across.count * &self.down.count).to_dd(0);
-        let [x, y, z] = self.direction(sample).map(|x| x.to_dd(k) / count);
-        Vec3::new(x, y, z)
+    /// Where the ray of a sample begins, seen from the eye, and the way along it to the image plane; times the count.
+    fn ray(&self, sample: [u32; 2]) -> [[Decimal; 3]; 2] {
+        let [point, ahead] = self.window(sample);
+        if self.is_parallel {
+            return [point, ahead];
+        }
+        [std::array::from_fn(|_| Decimal::default()), std::array::from_fn(|axis| &point[axis] + &ahead[axis])]
+    }
+
+    /// Likewise in double-double, with 2ᵏ for what a length of the file is to have, and 2ᵐ for the way to the image plane.
+    fn ray_in_dd(&self, sample: [u32; 2], [k, m]: [i32; 2]) -> Ray<Dd> {
+        let count = self.count().to_dd(0);
+        let [origin, direction] = self.ray(sample);
+        let vector =
+            |[x, y, z]: [Decimal; 3], k: i32| Vec3::new(x.to_dd(k) / count, y.to_dd(k) / count, z.to_dd(k) / count);
+        Ray { origin: vector(origin, k), direction: vector(direction, m) }
     }
 
     /// The sign of B² − AC for the ray of a sample and the ellipsoid around `center` with these semi-axes: less where the line
     /// misses it, equal where it touches it.
     pub fn discriminant(&self, sample: [u32; 2], center: DVec3, semi_axes: DVec3) -> Ordering {
         let (center, [a, b, c]) = (vector(center), &vector(semi_axes));
-        let direction = self.direction(sample);
+        let ([start, direction], count) = (self.ray(sample), self.count());
         // In object space, where the ellipsoid is the unit sphere: B² − AC = A − |S' × c'|². Vectors are there times the product
         // of the semi-axes, which spares quotients.
         let others = [b * c, c * a, a * b];
         let d: [Decimal; 3] = std::array::from_fn(|axis| &direction[axis] * &others[axis]);
-        let s: [Decimal; 3] = std::array::from_fn(|axis| &(&self.eye[axis] - &center[axis]) * &others[axis]);
+        let s: [Decimal; 3] = std::array::from_fn(|axis| {
+            let from_center = &(&(&self.eye[axis] - &center[axis]) * &count) + &start[axis];
+            &from_center * &others[axis]
+        });
         let moment = [[1, 2], [2, 0], [0, 1]].map(|[i, j]| &(&s[i] * &d[j]) - &(&s[j] * &d[i]));
         let squared = |v: &[Decimal; 3]| v.iter().fold(Decimal::default(), |sum, x| &sum + &(x * x));
-        let product = a * &others[0];
+        let product = &(a * &others[0]) * &count;
         (&(&squared(&d) * &(&product * &product)) - &squared(&moment)).sign()
     }
 }
@@ -182,9 +214,9 @@ impl ExactScene {
         }
     }
 
-    /// The direction of a sample's ray in the units of kernels, in double-double.
-    pub(crate) fn direction(&self, sample: [u32; 2]) -> Vec3<Dd> {
-        self.camera.direction_in_dd(sample, self.factor + self.stretch)
+    /// The ray of a sample in the units of kernels, in double-double.
+    pub(crate) fn ray(&self, sample: [u32; 2]) -> Ray<Dd> {
+        self.camera.ray_in_dd(sample, [self.factor, self.factor + self.stretch])
     }
 
     /// A place of the file with the eye at the origin, in the units of kernels, in double-double.

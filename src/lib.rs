@@ -103,6 +103,8 @@ mod panics;
 #[doc(hidden)]
 pub mod part;
 #[doc(hidden)]
+pub mod pattern;
+#[doc(hidden)]
 pub mod precision;
 mod random;
 mod renderer;
@@ -139,12 +141,13 @@ mod words;
 pub use compare::{Difference, Explanation};
 pub use film::Picture;
 pub use glam::DVec3;
+pub use pattern::{Filter, Pattern};
 pub use precision::Tier;
 pub use renderer::{Error, Renderer, Views};
 pub use scene::{Fov, Light, Scene, Sphere, Window};
 pub use settings::Settings;
 pub use verify::Verify;
-pub use view::View;
+pub use view::{Projection, View};
 
 /// The causes of an [`Error`].
 pub mod errors {

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::area::Area;
+use crate::pattern::Pattern;
 use crate::scene::MAX_RESOLUTION;
 use crate::settings::{Secondary, Settings};
 use crate::viewed::ViewedScene;
@@ -97,10 +98,14 @@ impl std::error::Error for Misuse {}
 /// Whether there is such a picture of `viewed`.
 pub(crate) fn check_picture(viewed: &ViewedScene) -> Result<(), Misuse> {
     let (scene, settings) = (viewed.scene(), viewed.settings());
+    let most = match settings.pattern {
+        Pattern::Grid { .. } => Pattern::MAX_SIDE,
+        Pattern::Fibonacci { .. } => Pattern::MAX_COUNT,
+    };
     let numbers = [
         ("width", scene.width, 1..=MAX_RESOLUTION),
         ("height", scene.height, 1..=MAX_RESOLUTION),
-        ("samples", settings.samples_per_side, 1..=Settings::MAX_SAMPLES_PER_SIDE),
+        ("samples", settings.pattern.side(), 1..=most),
         ("max_depth", settings.max_depth, 0..=Settings::MAX_DEPTH),
     ];
     let Secondary { shadow, reflection } = settings.secondary;

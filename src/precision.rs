@@ -215,7 +215,9 @@ impl Demand {
         let (scene, census) = (viewed.scene(), viewed.census());
         let (brightness, reach) = (Brightness::of(viewed, effects), limits::reach(viewed, effects));
         let lights = scene.lights.iter().filter(|_| effects.set.has(Effect::Shadows)).map(|light| light.position);
-        let origins: Vec<DVec3> = std::iter::once(DVec3::ZERO).chain(lights).collect();
+        // Where rays are parallel none begins at the eye, and what is near the plane where they begin is cut away.
+        let eye = (!viewed.settings().view.is_parallel()).then_some(DVec3::ZERO);
+        let origins: Vec<DVec3> = eye.into_iter().chain(lights).collect();
         let count = scene.spheres.len();
         let chunk = |chunk: usize| {
             let mut found = Found::none();
@@ -236,7 +238,7 @@ impl Demand {
         }
         let on = |effect, extreme| if effects.set.has(effect) { extreme } else { Extreme::NONE };
         Self {
-            share: Shares::new(scene, viewed.settings().view.axes(), effects).estimate(&largest, &nested),
+            share: Shares::new(scene, &viewed.settings().view, effects).estimate(&largest, &nested),
             nearness,
             axis_ratio: census.axis_ratio,
             exponent: on(Effect::Specular, census.exponent),

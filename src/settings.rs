@@ -6,6 +6,7 @@ use clap::ValueEnum;
 use glam::DVec3;
 use serde::Serialize;
 
+use crate::pattern::Pattern;
 use crate::view::View;
 
 /// Where in its pixel a sample lies.
@@ -143,30 +144,14 @@ pub struct Settings {
     pub specular: Specular,
     /// Greatest number of reflection bounces, 0 to [`Settings::MAX_DEPTH`].
     pub max_depth: u32,
-    /// Side k of the regular grid of k × k samples in each pixel, 1 to [`Settings::MAX_SAMPLES_PER_SIDE`]; the pixel is their mean.
-    pub samples_per_side: u32,
+    /// The samples of each pixel, which is their mean.
+    #[serde(flatten)]
+    pub pattern: Pattern,
 }
 
 impl Settings {
     /// The greatest accepted `max_depth`; beyond some tens of bounces nothing is left of a ray's weight or accuracy.
     pub const MAX_DEPTH: u32 = 1000;
-    /// The greatest accepted `samples_per_side`: 256 samples a pixel.
-    pub const MAX_SAMPLES_PER_SIDE: u32 = 16;
-
-    /// The side of the grid of `count` samples.
-    ///
-    /// # Errors
-    ///
-    /// Where `count` is no square number of a grid that is accepted.
-    pub fn samples_per_side_of(count: u32) -> Result<u32, String> {
-        let greatest = Self::MAX_SAMPLES_PER_SIDE.pow(2);
-        let side = count.isqrt();
-        if (1..=greatest).contains(&count) && side * side == count {
-            Ok(side)
-        } else {
-            Err(format!("expected a square number from 1 to {greatest}: 1, 4, 9, 16, 25, …"))
-        }
-    }
 
     /// The convention that the official pictures pin.
     pub fn classic() -> Self {
@@ -177,15 +162,15 @@ impl Settings {
             secondary: Secondary::CLASSIC,
             specular: Specular::Phong,
             max_depth: 3,
-            samples_per_side: 1,
+            pattern: Pattern::ONE,
         }
     }
 
     /// These settings by the rules of `convention`; depth, samples and view stay.
     #[must_use]
     pub fn with_convention(&self, convention: &Self) -> Self {
-        let Self { view, max_depth, samples_per_side, .. } = *self;
-        Self { view, max_depth, samples_per_side, ..*convention }
+        let Self { view, max_depth, pattern, .. } = *self;
+        Self { view, max_depth, pattern, ..*convention }
     }
 
     /// The convention whose rules these are, if there is one.

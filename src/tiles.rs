@@ -25,6 +25,7 @@ pub(crate) struct Bounds {
 pub(crate) struct Projection {
     axes: [DVec3; 3],
     near: f64,
+    is_parallel: bool,
     across: Pixels,
     down: Pixels,
     area: Area,
@@ -33,7 +34,8 @@ pub(crate) struct Projection {
 impl Projection {
     pub(crate) fn new(camera: &Camera) -> Self {
         let (across, down) = (Pixels::across(camera), Pixels::down(camera));
-        Self { axes: camera.axes(), near: camera.near(), across, down, area: camera.area() }
+        let (axes, near, is_parallel) = (camera.axes(), camera.near(), camera.is_parallel());
+        Self { axes, near, is_parallel, across, down, area: camera.area() }
     }
 
     /// Width and height of the picture.
@@ -49,9 +51,13 @@ impl Projection {
     /// Columns and rows that the part of the ellipsoid beyond the image plane can cover.
     pub(crate) fn bounds(&self, center: DVec3, semi_axes: DVec3) -> Option<Bounds> {
         let seen = self.axes.map(|axis| axis.dot(center));
-        let ([across, down], whole) = match ball_slopes(seen, semi_axes, self.near) {
-            Some(slopes) => (slopes, true),
-            None => self.slopes(seen, semi_axes)?,
+        let ([across, down], whole) = if self.is_parallel {
+            (self.spans(seen, semi_axes)?, false)
+        } else {
+            match ball_slopes(seen, semi_axes, self.near) {
+                Some(slopes) => (slopes, true),
+                None => self.slopes(seen, semi_axes)?,
+            }
         };
         let columns = self.across.between(across)?;
         let rows = self.down.between(down)?;
@@ -69,6 +75,13 @@ impl Projection {
         let across = slopes([x, z], [half_x, half_z], depth, self.near)?;
         let down = slopes([y, z], [half_y, half_z], depth, self.near)?;
         Some(([across, down], z + depth < -self.near))
+    }
+
+    /// The same for parallel rays: places, which stand for slopes there.
+    fn spans(&self, [x, y, z]: [f64; 3], semi_axes: DVec3) -> Option<[[f64; 2]; 2]> {
+        let [half_x, half_y, depth] = self.axes.map(|axis| (axis * semi_axes).length());
+        let is_seen = !(z - depth > -self.near);
+        is_seen.then_some([[x - half_x, x + half_x], [y - half_y, y + half_y]])
     }
 }
 
@@ -158,7 +171,8 @@ struct Pixels {
     count: u32,
     /// Where a pixel's first and last sample are.
     samples: [f64; 2],
-    /// Distance of the image plane, the edge on it where pixels begin, and pixels per unit of length, negative where they go down.
+    /// Distance of the image plane, and 1 for parallel rays; the edge on it where pixels begin; and pixels per unit of length, negative where
+    /// they go down.
     near: f64,
     edge: f64,
     per_unit: f64,
@@ -177,7 +191,8 @@ impl Pixels {
         let per_unit = f64::from(count) / size;
         // Where that is beyond the range of f64, all bounds are left open.
         let per_unit = if per_unit.is_finite() { per_unit } else { f64::NAN };
-        Self { count, samples, near: camera.near(), edge, per_unit }
+        let near = if camera.is_parallel() { 1.0 } else { camera.near() };
+        Self { count, samples, near, edge, per_unit }
     }
 
     /// Where in pixels from the edge the rays with this slope meet the image plane.

@@ -2,11 +2,30 @@
 
 use std::fmt;
 
+use clap::ValueEnum;
 use glam::DVec3;
 use serde::{Serialize, Serializer};
 
 /// Below this sine of the angle between the view and the upward direction, rounding would choose the picture's rotation.
 const LEAST_SINE: f64 = 1e-9;
+
+/// Where the rays of a picture come from.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum Projection {
+    /// From the eye through the window: what is farther away is smaller
+    #[default]
+    Perspective,
+    /// Along the view from the points of the window, in world units: all is shown as large as it is
+    Orthographic,
+}
+
+impl Projection {
+    #[allow(clippy::trivially_copy_pass_by_ref, reason = "serde asks so")]
+    fn is_usual(&self) -> bool {
+        *self == Self::default()
+    }
+}
 
 /// The eye and the axes of the picture in the world, orthonormal. The default is the scene file's camera.
 ///
@@ -25,6 +44,9 @@ pub struct View {
     /// Against the direction of view.
     #[serde(serialize_with = "coordinates")]
     back: DVec3,
+    /// How the world is projected.
+    #[serde(skip_serializing_if = "Projection::is_usual")]
+    projection: Projection,
 }
 
 /// Why there is no such view.
@@ -38,6 +60,8 @@ pub enum ViewError {
     NoUp,
     /// The upward direction lies along the direction of view.
     UpAlongView,
+    /// A field of view is asked for where rays are parallel.
+    FovOfParallel,
 }
 
 impl fmt::Display for ViewError {
@@ -47,6 +71,9 @@ impl fmt::Display for ViewError {
             Self::NoDirection => "eye and look-at are the same point: there is no direction of view",
             Self::NoUp => "up is 0,0,0: it has no direction",
             Self::UpAlongView => "up is parallel to the direction of view: choose another --up",
+            Self::FovOfParallel => {
+                "an orthographic picture has no field of view: LEFT, RIGHT, BOTTOM and TOP say how much it shows"
+            }
         })
     }
 }
@@ -55,7 +82,8 @@ impl std::error::Error for ViewError {}
 
 impl View {
     /// The eye at the origin, looking along −z, with y upwards.
-    pub const FILE: Self = Self { eye: DVec3::ZERO, right: DVec3::X, up: DVec3::Y, back: DVec3::Z };
+    pub const FILE: Self =
+        Self { eye: DVec3::ZERO, right: DVec3::X, up: DVec3::Y, back: DVec3::Z, projection: Projection::Perspective };
 
     /// From `eye` towards `look_at` (without one along −z), with `up` upwards on the picture as far as the direction of view
     /// allows.
@@ -76,13 +104,24 @@ impl View {
         // Where up is nearly along the view, rounding leaves a part of it.
         let right = unit(sideways).ok_or(ViewError::UpAlongView)?;
         let right = unit(right - back * right.dot(back)).ok_or(ViewError::UpAlongView)?;
-        Ok(Self { eye, right, up: back.cross(right), back })
+        Ok(Self { eye, right, up: back.cross(right), back, projection: Projection::Perspective })
     }
 
     /// The same axes with the eye at the origin.
     #[must_use]
     pub(crate) fn at_origin(self) -> Self {
         Self { eye: DVec3::ZERO, ..self }
+    }
+
+    /// The same view in this projection.
+    #[must_use]
+    pub fn projected(self, projection: Projection) -> Self {
+        Self { projection, ..self }
+    }
+
+    /// Whether all rays from the eye are parallel.
+    pub(crate) fn is_parallel(&self) -> bool {
+        self.projection == Projection::Orthographic
     }
 
     /// The picture's axes in the world: to the right, upwards, and against the direction of view.

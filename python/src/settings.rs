@@ -2,6 +2,7 @@
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use trueray::pattern::Pattern;
 use trueray::settings::Convention;
 
 /// Convention, depth and samples.
@@ -15,11 +16,11 @@ impl Settings {
     fn new(convention: &str, max_depth: u32, samples: u32) -> PyResult<Self> {
         let wrong = |argument, why| PyValueError::new_err(format!("{argument}: {why}"));
         let convention: Convention = convention.parse().map_err(|why| wrong("convention", why))?;
-        let samples_per_side = trueray::Settings::samples_per_side_of(samples).map_err(|why| wrong("samples", why))?;
+        let pattern = Pattern::grid_of(samples).map_err(|why| wrong("samples", why))?;
         if max_depth > trueray::Settings::MAX_DEPTH {
             return Err(wrong("max_depth", format!("expected 0 to {}", trueray::Settings::MAX_DEPTH)));
         }
-        Ok(Self(trueray::Settings { max_depth, samples_per_side, ..convention.settings() }))
+        Ok(Self(trueray::Settings { max_depth, pattern, ..convention.settings() }))
     }
 }
 

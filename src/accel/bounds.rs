@@ -4,6 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::kept::{ROOM, moved_at_most};
+use crate::camera::Camera;
 use crate::census::Extents;
 use crate::geometry::extent;
 use crate::scene::Sphere;
@@ -81,7 +82,8 @@ impl<'a> Enclosure<'a> {
         let Extents { magnitude, low, high, .. } = viewed.extents();
         let reach = scene.lights.iter().map(|light| extent(light.position)).fold(magnitude, f64::max);
         // Of the file's numbers they take what the eye at the origin makes of them.
-        let error = ERROR_STEPS * rounding.tests * magnitude + 2.0 * viewed.moved_by();
+        let start = Camera::new(viewed).position_error(0.0);
+        let error = ERROR_STEPS * rounding.tests * magnitude + 2.0 * viewed.moved_by() + 2.0 * start;
         Self { spheres: &scene.spheres, true_axes, error, magnitude, reach, ends: [low, high], play: 0.0, rounding }
     }
 

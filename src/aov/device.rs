@@ -51,7 +51,7 @@ impl<'a> DeviceLayers<'a> {
             colors: GpuRenderer::with(gpu, viewed, effects, tier, &linear)?,
             terms: GpuRenderer::with(gpu, viewed, &of_hit, tier, &terms)?,
             lights: viewed.scene().lights.len(),
-            has_samples: settings.samples_per_side > 1,
+            has_samples: settings.pattern.count() > 1,
             quantize: settings.quantize,
             eye: viewed.in_file().1.view.eye,
             factor: viewed.factor(),

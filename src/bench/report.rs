@@ -27,7 +27,7 @@ fn facts(bench: &Bench) -> Markup {
             dt { "CPU" }
             dd { "the reference in " code { "f64" } ", " (bench.cpu_threads) " threads" }
             dt { "Picture" }
-            dd { "greatest depth " (bench.settings.max_depth) ", " (count(bench.settings.samples_per_side.pow(2), "sample")) " a pixel" }
+            dd { "greatest depth " (bench.settings.max_depth) ", " (count(bench.settings.pattern.count(), "sample")) " a pixel" }
             dt { "Runs" }
             dd { (bench.runs) " of each scene and renderer, at most " (time(bench.seconds * 1e3)) " together" }
         }

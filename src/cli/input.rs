@@ -88,6 +88,14 @@ impl Input {
         let opened = Opened::open(path)?;
         let name = opened.name.clone();
         let (parsed, lamps, notes) = if let Some(format) = opened.format {
+            if reading.options.view.is_parallel() {
+                let help =
+                    "help: trueray import writes a scene, whose window may be changed for --projection orthographic";
+                return Err(Failure::new(
+                    USAGE,
+                    format!("{}: particles are framed for an eye\n  {help}", visible(&name)),
+                ));
+            }
             let imported = Import::new(&name, format, opened.into_reader(), reading.options.clone()).first();
             (imported.parsed, imported.lamps, imported.notes)
         } else {

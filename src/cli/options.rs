@@ -2,22 +2,33 @@
 
 use super::failure::{Failure, SCENE, USAGE};
 use super::output::errln;
-use clap::Args;
+use clap::{Args, ValueEnum};
 use glam::DVec3;
 
 use crate::doubts::doubts;
 use crate::effects::{Effects, Request};
 use crate::gpu::{Choice, Error, Gpu};
 use crate::limits;
+use crate::pattern::{Filter, Pattern};
 use crate::precision::{self, Selection, Tier};
 use crate::scene::{Fov, Scene, resolution};
 use crate::settings::{Convention, Quantize, SampleOffset, Secondary, Settings, Specular};
+use crate::view::Projection;
 #[cfg(feature = "view")]
 use crate::view::View;
 use crate::viewed::ViewedScene;
 #[cfg(feature = "view")]
 use crate::viewer::{FlightScale, Pose, ViewState};
 use crate::views::Placement;
+
+/// How the samples of a pixel are placed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum PatternName {
+    /// A regular grid over the pixel
+    Grid,
+    /// A Fibonacci lattice of any number of samples: edges that are nearly level or upright have many more shades
+    Fibonacci,
+}
 
 /// What decides the picture besides the scene.
 #[derive(Debug, Args)]
@@ -41,9 +52,15 @@ pub(super) struct PictureOptions {
     /// Greatest number of bounces, reflected or refracted
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(0..=i64::from(Settings::MAX_DEPTH)))]
     max_depth: u32,
-    /// Samples of each pixel, on a regular grid: a square number up to 256
-    #[arg(long = "spp", value_name = "N", default_value = "1", value_parser = samples_per_side)]
-    samples_per_side: u32,
+    /// Samples of each pixel, up to 256; on a regular grid a square number
+    #[arg(long = "spp", value_name = "N", default_value = "1", value_parser = samples)]
+    samples: u32,
+    /// How the samples of a pixel are placed
+    #[arg(long, value_enum, default_value_t = PatternName::Grid)]
+    pattern: PatternName,
+    /// How samples are spread over the pixel and around it, with `--pattern fibonacci`
+    #[arg(long, value_enum, default_value_t = Filter::Box)]
+    filter: Filter,
     /// Picture size in place of the scene's RES
     #[arg(long, value_name = "WxH", value_parser = resolution)]
     res: Option<(u32, u32)>,
@@ -71,13 +88,16 @@ struct CameraOptions {
     /// LEFT, RIGHT, BOTTOM and TOP
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
     fov: Option<Fov>,
+    /// Whether rays come from the eye or are parallel: an orthographic picture shows the window's own width and height of the world
+    #[arg(long, value_enum, default_value_t = Projection::Perspective)]
+    projection: Projection,
 }
 
 impl PictureOptions {
     /// Where the eye is.
     pub(super) fn placement(&self) -> Placement {
-        let CameraOptions { eye, look_at, up, fov } = self.camera;
-        Placement { eye, look_at, up, fov }
+        let CameraOptions { eye, look_at, up, fov, projection } = self.camera;
+        Placement { eye, look_at, up, fov, projection }
     }
 
     /// Fails where the camera options define no view.
@@ -90,7 +110,25 @@ impl PictureOptions {
             secondary: self.secondary_epsilon.unwrap_or(base.secondary),
             specular: self.specular.unwrap_or(base.specular),
             max_depth: self.max_depth,
-            samples_per_side: self.samples_per_side,
+            pattern: self.pattern("--spp", self.samples)?,
+        })
+    }
+
+    /// The pattern with so many samples, which `option` asks for.
+    pub(super) fn pattern(&self, option: &str, count: u32) -> Result<Pattern, Failure> {
+        let pattern = match self.pattern {
+            PatternName::Grid if self.filter != Filter::Box => {
+                return Err(Failure::new(
+                    USAGE,
+                    "a regular grid has no --filter but the box\n  help: --pattern fibonacci",
+                ));
+            }
+            PatternName::Grid => Pattern::ONE,
+            PatternName::Fibonacci => Pattern::Fibonacci { count, filter: self.filter },
+        };
+        pattern.with_count(count).map_err(|why| {
+            let help = if pattern == Pattern::ONE { "\n  help: --pattern fibonacci takes any number" } else { "" };
+            Failure::new(USAGE, format!("{option} {count}: {why}{help}"))
         })
     }
 
@@ -98,7 +136,13 @@ impl PictureOptions {
     #[cfg(feature = "view")]
     pub(super) fn view_state(&self, scene: &Scene, precision: precision::Request) -> Result<ViewState, Failure> {
         let settings = self.settings()?;
-        let CameraOptions { eye, look_at, up, fov } = self.camera;
+        let CameraOptions { eye, look_at, up, fov, projection } = self.camera;
+        if projection == Projection::Orthographic {
+            return Err(Failure::new(
+                USAGE,
+                "the live view is perspective only\n  help: trueray render --projection orthographic",
+            ));
+        }
         let pose =
             look_at.map_or_else(|| Pose::ahead(eye, up, FlightScale::of(scene)), |look_at| Pose { eye, look_at, up });
         let pose = (settings.view != View::FILE).then_some(pose);
@@ -271,9 +315,10 @@ fn secondary(text: &str) -> Result<Secondary, String> {
     }
 }
 
-/// The side of the grid of so many samples.
-pub(super) fn samples_per_side(text: &str) -> Result<u32, String> {
-    Settings::samples_per_side_of(text.parse().unwrap_or(0))
+/// A number of samples.
+pub(super) fn samples(text: &str) -> Result<u32, String> {
+    let count = text.parse().ok().filter(|count| (1..=Pattern::MAX_COUNT).contains(count));
+    count.ok_or_else(|| format!("expected a number from 1 to {}, of a grid a square number", Pattern::MAX_COUNT))
 }
 
 /// Three coordinates.

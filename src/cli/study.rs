@@ -7,7 +7,7 @@ use super::failure::Failure;
 use super::files::{command, seconds};
 use super::guard::Guard;
 use super::input::Loaded;
-use super::options::{DeviceOptions, PictureOptions, samples_per_side};
+use super::options::{DeviceOptions, PictureOptions, samples};
 use super::output::errln;
 use super::particles::Reading;
 use super::progress::{Progress, Style};
@@ -34,8 +34,8 @@ pub(super) struct Args {
     /// Reflection depths to compare; without this all from 0 to the greatest that can matter
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(0..=i64::from(Settings::MAX_DEPTH)))]
     depths: Vec<u32>,
-    /// Samples per pixel to compare: square numbers
-    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "1,4,16", value_parser = samples_per_side)]
+    /// Samples per pixel to compare: of a grid square numbers
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "1,4,16", value_parser = samples)]
     spp_list: Vec<u32>,
     /// Rays of each hard case, on which the intersection kernels are compared once, if a Vulkan device is used; 0 leaves
     /// them out
@@ -66,11 +66,13 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         list.dedup();
         list
     };
+    let counts = distinct(&args.spp_list);
+    let patterns = counts.iter().map(|&count| args.picture.pattern("--spp-list", count));
     let plan = StudyPlan {
         runs: args.runs as usize,
         seconds: args.seconds,
         depths: distinct(&args.depths),
-        sides: distinct(&args.spp_list),
+        patterns: patterns.collect::<Result<_, _>>()?,
     };
     let results = Arc::new(Mutex::new(Results::new(args)));
     let last = Arc::clone(&results);

@@ -132,10 +132,10 @@ impl<T: Real, const PROOF: bool> Bound<T, PROOF> {
         }
     }
 
-    /// Begins with a primary ray whose direction is known to `direction`.
+    /// Begins with a primary ray whose origin is known to `position` and whose direction to `direction`.
     #[inline]
-    pub(crate) fn begin(&mut self, direction: T) {
-        self.cone = Cone { position: T::ZERO, direction };
+    pub(crate) fn begin(&mut self, [position, direction]: [T; 2]) {
+        self.cone = Cone { position, direction };
         self.waiting.clear();
         self.is_begun = false;
         self.throughput = T::ONE;

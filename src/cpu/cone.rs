@@ -62,7 +62,7 @@ impl<'a> Cone<'a> {
             surfaces,
             gamut,
             max_depth: world.max_depth,
-            path: Path::primary(roundoff),
+            path: Path::primary(roundoff, &reference.camera),
             waiting: Vec::new(),
             mirror: 0.0,
             normal: 0.0,

@@ -11,6 +11,7 @@ use super::real::Real;
 use super::scene::{Shape, World};
 use super::shade::max;
 use super::vec3::{Vec3, largest, length};
+use crate::camera::Camera;
 use crate::precision::Tier;
 
 /// Roundings of a place on the way into object space: of inputs, and of what is calculated from them.
@@ -70,10 +71,10 @@ pub(super) struct Path {
 }
 
 impl Path {
-    /// Of a ray from the eye, whose direction is the sum of two rounded vectors.
-    pub(super) fn primary(roundoff: Roundoff) -> Self {
-        let direction = PLACE * roundoff.geometry;
-        Self { own: None, position: 0.0, direction, end: None, throughput: 1.0, bounces: 0, ray: 0 }
+    /// Of a ray from the eye, whose direction, or origin where it is parallel to others, is the sum of two rounded vectors.
+    pub(super) fn primary(roundoff: Roundoff, camera: &Camera) -> Self {
+        let (position, direction) = (camera.position_error(roundoff.geometry), PLACE * roundoff.geometry);
+        Self { own: None, position, direction, end: None, throughput: 1.0, bounces: 0, ray: 0 }
     }
 }
 

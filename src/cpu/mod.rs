@@ -37,6 +37,7 @@ pub use inspect::{
     Blocker, HitRecord, Inspector, LightRecord, MOST_RAYS, Margin, PixelRecord, RayKind, RayRecord, SampleRecord,
     ShadowRecord, SnellRecord, TestRecord, Verdict,
 };
+pub(crate) use intersect::Ray;
 pub use judge::{Finding, Judge, Trial};
 pub use pick::{PrimaryHit, picked};
 pub use real::Real;

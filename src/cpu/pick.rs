@@ -35,10 +35,11 @@ pub fn picked(viewed: &ViewedScene, x: u32, y: u32) -> Option<PrimaryHit> {
         return None;
     }
     let camera = Camera::new(viewed);
-    let middle = camera.samples_per_side() / 2;
-    let sample = [x, y].map(|at| at * camera.samples_per_side() + middle);
-    let direction = camera.column(sample[0]) + camera.row(sample[1]);
-    let ray = Ray::<f64> { origin: Vec3::ZERO, direction: Vec3::from_f64(direction) };
+    let (side, [column, row]) = (camera.pattern().side(), camera.pattern().middle());
+    let sample = [x * side + column, y * side + row];
+    let sum = camera.column(sample[0]) + camera.row(sample[1]);
+    let (origin, direction) = if camera.is_parallel() { (sum, camera.direction()) } else { (DVec3::ZERO, sum) };
+    let ray = Ray::<f64> { origin: Vec3::from_f64(origin), direction: Vec3::from_f64(direction) };
     // Few rays come so near to a tangent.
     let exact = LazyCell::new(|| ExactCamera::new(viewed));
     let mut range = Range { t_min: camera.t_min(), t_max: f64::INFINITY, greater: true };
@@ -58,6 +59,6 @@ pub fn picked(viewed: &ViewedScene, x: u32, y: u32) -> Option<PrimaryHit> {
     }
     let (sphere, inside) = nearest?;
     // Back from the units of kernels.
-    let position = file_settings.view.eye + direction * range.t_max * viewed.factor().recip();
+    let position = file_settings.view.eye + (origin + direction * range.t_max) * viewed.factor().recip();
     Some(PrimaryHit { sphere, t: range.t_max * camera.stretch(), position, inside })
 }

@@ -3,7 +3,7 @@
 
 use super::bound::Bound;
 use super::dd::Dd;
-use super::intersect::{Primary, Range, Ray};
+use super::intersect::{Primary, Range};
 use super::oracle::quotient;
 use super::real::Real;
 use super::render::{Reference, Tally, resolve};
@@ -24,9 +24,9 @@ impl<T: Real> Reference<T> {
 
     /// The unclamped colour of a pixel, with each decision proven where `T` does so.
     pub(super) fn proven_color(&self, i: u32, j: u32, bound: &mut Bound<T, true>, tally: &mut Tally) -> Vec3<T> {
-        let side = self.camera.samples_per_side();
+        let count = self.camera.pattern().count();
         if !T::PROVES {
-            return resolve(self.primaries(i, j).map(|primary| trace(&self.world, &primary, tally)), side);
+            return resolve(self.primaries(i, j).map(|primary| trace(&self.world, &primary, tally)), count);
         }
         let (mut more_bits, mut undecided) = (false, false);
         let samples = self.primaries(i, j).map(|primary| {
@@ -46,7 +46,7 @@ impl<T: Real> Reference<T> {
             tally.hits = hits + decided.hits;
             color
         });
-        let color = resolve(samples, side);
+        let color = resolve(samples, count);
         tally.more_bits += u64::from(more_bits);
         tally.undecided += u64::from(undecided);
         color
@@ -62,7 +62,7 @@ impl<T: Real> Reference<T> {
     /// The colour of a sample, and in `bound` whether its decisions are sure.
     #[inline]
     fn bounded_color(&self, primary: &Primary<T>, bound: &mut Bound<T, true>, tally: &mut Tally) -> Vec3<T> {
-        bound.begin(T::from_f64(self.camera.direction_error(T::UNIT)));
+        bound.begin(self.errors());
         trace(&self.world, primary, &mut (bound, tally))
     }
 
@@ -70,9 +70,8 @@ impl<T: Real> Reference<T> {
     #[cold]
     fn decide(&self, primary: &Primary<T>) -> (Replay, bool) {
         let world = self.exact_world.get_or_init(|| in_dd(&self.world));
-        let ray = Ray { origin: Vec3::ZERO, direction: world.exact.direction(primary.sample) };
-        let primary = Primary { ray, sample: primary.sample, seen: primary.seen };
-        let (mut ties, mut notes) = (Ties::new(world), Notes::default());
+        let primary = Primary { ray: world.exact.ray(primary.sample), sample: primary.sample, seen: primary.seen };
+        let (mut ties, mut notes) = (Ties::new(world, &primary.ray), Notes::default());
         trace(world, &primary, &mut (&mut ties, &mut notes));
         (notes.replay(), ties.bound.unsure.is_some())
     }

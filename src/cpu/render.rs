@@ -55,8 +55,16 @@ impl<T: Real> Reference<T> {
 
     /// The ray of the sample in sample column `i` and sample row `j`.
     fn primary_ray(&self, [i, j]: [u32; 2]) -> Ray<T> {
-        let direction = Vec3::from_f64(self.camera.column(i)) + Vec3::from_f64(self.camera.row(j));
-        Ray { origin: Vec3::ZERO, direction }
+        let sum = Vec3::from_f64(self.camera.column(i)) + Vec3::from_f64(self.camera.row(j));
+        if self.camera.is_parallel() {
+            return Ray { origin: sum, direction: Vec3::from_f64(self.camera.direction()) };
+        }
+        Ray { origin: Vec3::ZERO, direction: sum }
+    }
+
+    /// How far its origin may be off, and its direction as an angle.
+    pub(super) fn errors(&self) -> [T; 2] {
+        [self.camera.position_error(T::UNIT), self.camera.direction_error(T::UNIT)].map(T::from_f64)
     }
 
     /// Width and height of the picture.
@@ -82,7 +90,7 @@ impl<T: Real> Reference<T> {
         let (width, height) = self.size();
         let primary = (i < width && j < height).then(|| self.primaries(i, j).next()).flatten()?;
         let mut bound = Bound::<T, false>::new(&self.world);
-        bound.begin(T::from_f64(self.camera.direction_error(T::UNIT)));
+        bound.begin(self.errors());
         let color = trace(&self.world, &primary, &mut bound);
         let levels = Levels::new(self.quantize);
         let is_step = !bound.has_sure_levels(color, &levels, T::from_f64(others));
@@ -94,12 +102,14 @@ impl<T: Real> Reference<T> {
         })
     }
 
-    /// The rays of all samples of pixel (column `i`, row `j`), row by row.
+    /// The rays of all samples of pixel (column `i`, row `j`), in the order of the pattern.
     pub(super) fn primaries(&self, i: u32, j: u32) -> impl Iterator<Item = Primary<'_, T>> {
-        let side = self.camera.samples_per_side();
+        let pattern = self.camera.pattern();
+        let (side, count) = (pattern.side(), pattern.count());
         let seen = self.world.accel.screen.at(i, j);
-        (0..side * side).map(move |s| {
-            let sample = [i * side + s % side, j * side + s / side];
+        (0..count).map(move |s| {
+            let [column, row] = pattern.sample_place(s);
+            let sample = [i * side + column, j * side + row];
             Primary { ray: self.primary_ray(sample), sample, seen }
         })
     }
@@ -155,7 +165,7 @@ impl<T: Real> Reference<T> {
     /// What a pixel shows.
     #[inline]
     fn shown(&self, i: u32, j: u32, bound: &mut Bound<T, true>, tally: &mut Tally) -> Shown {
-        let samples = u64::from(self.camera.samples_per_side() * self.camera.samples_per_side());
+        let samples = u64::from(self.camera.pattern().count());
         let before = tally.hits;
         let color = self.proven_color(i, j, bound, tally);
         let linear = Linear { color: color.to_f64(), coverage: (tally.hits - before) as f64 / samples as f64 };
@@ -197,19 +207,19 @@ impl<T: Real> Reference<T> {
     }
 }
 
-/// The mean over a pixel's samples, row by row, `side` of them in each; read it beside `shaders/resolve.wgsl`. Taken from
+/// The mean over a pixel's samples, `count` of them; read it beside `shaders/resolve.wgsl`. Taken from
 /// differences to the first sample, it is exact where all are equal.
 #[inline]
-pub(super) fn resolve<T: Real>(mut samples: impl Iterator<Item = Vec3<T>>, side: u32) -> Vec3<T> {
+pub(super) fn resolve<T: Real>(mut samples: impl Iterator<Item = Vec3<T>>, count: u32) -> Vec3<T> {
     let Some(first) = samples.next() else { return Vec3::ZERO };
     let mut excess = Vec3::ZERO;
     for color in samples {
         excess += color - first;
     }
-    if side == 1 {
+    if count == 1 {
         return first;
     }
-    let count = T::from_f64(f64::from(side * side));
+    let count = T::from_f64(f64::from(count));
     first + Vec3::new(excess.x / count, excess.y / count, excess.z / count)
 }
 

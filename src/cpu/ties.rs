@@ -10,6 +10,7 @@ use super::real::Real;
 use super::refract::Snell;
 use super::scene::{PointLight, Shape, World};
 use super::shade::{LightTerms, Surface, min};
+use super::vec3::length;
 use super::witness::Witness;
 use crate::roundings::TIE;
 
@@ -24,11 +25,11 @@ pub(super) struct Ties {
 
 impl Ties {
     /// Of a primary ray in `world`.
-    pub(super) fn new(world: &World<Dd>) -> Self {
+    pub(super) fn new(world: &World<Dd>, ray: &Ray<Dd>) -> Self {
         // A quotient of counts and a sum before it.
-        let direction = Dd::from(4.0 * Dd::UNIT);
+        let error = Dd::from(4.0 * Dd::UNIT);
         let mut bound = Bound::new(world);
-        bound.begin(direction);
+        bound.begin([error * length(ray.origin), error]);
         Self { bound, hits: Vec::new(), is_blocked: false }
     }
 

@@ -113,7 +113,7 @@ pub(super) fn has_bound(gpu: &Gpu, tier: Tier, settings: &Settings) -> bool {
         Tier::Robust => false,
         Tier::Double => gpu.device.info.f64,
     };
-    kernel && settings.samples_per_side == 1
+    kernel && settings.pattern.count() == 1
 }
 
 /// What a certified picture takes beside its first kernel.

@@ -108,11 +108,12 @@ impl Found<'_> {
 
     fn settings(&mut self, settings: &Settings) {
         if settings.view != crate::view::View::FILE {
-            let what = "a scene is exported with the camera of its file: leave --eye, --look-at and --up out";
+            let what =
+                "a scene is exported with the camera of its file: leave --eye, --look-at, --up and --projection out";
             self.obstacles.push(Obstacle::Settings(what.into()));
         }
-        if settings.samples_per_side > 1 {
-            let what = format!("{} has no regular grid of samples: export one sample a pixel", self.peer);
+        if settings.pattern.count() > 1 {
+            let what = format!("{} does not place samples as here: export one sample a pixel", self.peer);
             self.obstacles.push(Obstacle::Settings(what));
         }
         let own = quantize(self.peer);

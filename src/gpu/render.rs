@@ -239,6 +239,11 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         if let Some(why) = limits::problem_in(scalar, viewed, effects) {
             return Err(Error::OutOfRange { kernel: kernel.name(), why });
         }
+        let padded = [scene.width, scene.height].map(|size| u64::from(size.next_multiple_of(TILE)));
+        if padded.iter().sum::<u64>() * u64::from(settings.pattern.side()) > u64::from(u32::MAX) {
+            let why = "the picture has more columns and rows of samples than a kernel counts".to_owned();
+            return Err(Error::OutOfRange { kernel: kernel.name(), why });
+        }
         let (tuning, tables) = (&gpu.tuned().tuning, gpu.tables());
         let specialisation = Specialisation {
             slots: O::SLOTS,
@@ -300,7 +305,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         };
         add_scene(&mut set, &gpu.device, &packed, &specialisation, basis)?;
         drop(uploading);
-        let samples = u64::from(settings.samples_per_side * settings.samples_per_side);
+        let samples = u64::from(settings.pattern.count());
         let tests_per_pixel = samples
             * (scene.spheres.len().min(64) as u64 + 1)
             * (1 + scene.lights.len() as u64 * u64::from(effects.set.has(Effect::Shadows)))

@@ -27,9 +27,9 @@ pub(super) struct Textbook<'a> {
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Ray {
-    origin: DVec3,
-    direction: DVec3,
+pub(super) struct Ray {
+    pub origin: DVec3,
+    pub direction: DVec3,
 }
 
 /// The sphere that a ray leaves.
@@ -91,21 +91,21 @@ fn exit(ray: &Ray, own: &Own, body: &Body) -> f64 {
 
 impl Textbook<'_> {
     /// The unclamped colour along a ray from the eye.
-    pub(super) fn color(&self, direction: DVec3) -> DVec3 {
+    pub(super) fn color(&self, ray: &Ray) -> DVec3 {
         let above = match self.rules.near {
             Near::Beyond => NEAR_T_MIN * self.plane,
             Near::AtLeast => (1.0 - 1e-9) * self.plane,
             Near::Ignored => 0.0,
-            Near::OneUnitAway => self.unit / direction.length(),
+            Near::OneUnitAway => self.unit / ray.direction.length(),
         };
         let range = Range { above, below: f64::INFINITY, greater: self.rules.far_root };
-        self.trace(&Ray { origin: DVec3::ZERO, direction }, None, &range, 0, true)
+        self.trace(ray, None, &range, 0, true)
     }
 
     /// The sphere that a ray from the eye meets.
-    pub(super) fn seen(&self, direction: DVec3) -> Option<usize> {
+    pub(super) fn seen(&self, ray: &Ray) -> Option<usize> {
         let range = Range { above: NEAR_T_MIN * self.plane, below: f64::INFINITY, greater: true };
-        self.nearest(&Ray { origin: DVec3::ZERO, direction }, None, &range).map(|hit| hit.body)
+        self.nearest(ray, None, &range).map(|hit| hit.body)
     }
 
     fn trace(&self, ray: &Ray, own: Option<&Own>, range: &Range, depth: u32, shows_background: bool) -> DVec3 {

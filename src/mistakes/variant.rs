@@ -8,7 +8,7 @@ use super::rules::{
     AmbientCount, Behind, Clamp, Fading, Mirror, Near, NegativeCosine, Normal, Rules, Shadow, SpecularFactor, ToLight,
     ToViewer, Winner,
 };
-use super::textbook::Textbook;
+use super::textbook::{Ray, Textbook};
 use super::world::World;
 use crate::camera::Camera;
 use crate::effects::{Effect, EffectSet, Effects};
@@ -319,8 +319,8 @@ impl Variant {
         }
     }
 
-    /// The direction of the ray through a place of the rendered picture, in samples from its top left corner.
-    fn direction(&self, stage: &Stage, [x, y]: [f64; 2]) -> DVec3 {
+    /// The ray through a place of the rendered picture, in samples from its top left corner.
+    fn ray(&self, stage: &Stage, [x, y]: [f64; 2]) -> Ray {
         let camera = &stage.camera;
         let [right, up, back] = camera.axes();
         let across = |at: f64, size: u32, count: u32| {
@@ -331,22 +331,26 @@ impl Variant {
         let x = camera.x_at(across(x, self.size[0], camera.width()));
         let y = camera.y_at(across(y, self.size[1], camera.height()));
         let near = if self.rules.near_is_one { stage.unit } else { camera.near() };
-        (right * x + up * y - back * near) * camera.stretch()
+        let (point, ahead) = (right * x + up * y, back * near);
+        if camera.is_parallel() {
+            return Ray { origin: point, direction: -ahead * camera.stretch() };
+        }
+        Ray { origin: DVec3::ZERO, direction: (point - ahead) * camera.stretch() }
     }
 
     /// The unclamped colour that pixel (`i`, `j`) of the rendered picture has.
     fn rendered(&self, stage: &Stage, [i, j]: [i64; 2]) -> DVec3 {
-        let side = stage.camera.samples_per_side();
+        let pattern = stage.camera.pattern();
         let textbook = self.textbook(stage);
+        let ticks = pattern.ticks(self.rules.offset);
         let sample = |s: u32| {
-            let [across, down] = [s % side, s / side].map(f64::from);
-            let (dx, dy) = self.rules.offset;
-            let place = [i as f64 + (across + dx) / f64::from(side), j as f64 + (down + dy) / f64::from(side)];
-            textbook.color(self.direction(stage, place))
+            let [across, down] = pattern.sample_place(s);
+            let place = [i as f64 + ticks[0].place(across), j as f64 + ticks[1].place(down)];
+            textbook.color(&self.ray(stage, place))
         };
         // As the reference takes the mean: exact where all samples are equal.
         let first = sample(0);
-        first + (1..side * side).map(|s| sample(s) - first).sum::<DVec3>() / f64::from(side * side)
+        first + (1..pattern.count()).map(|s| sample(s) - first).sum::<DVec3>() / f64::from(pattern.count())
     }
 
     /// The pixel of the rendered picture that pixel (`i`, `j`) shows; `None` where it shows none.
@@ -373,7 +377,7 @@ impl Variant {
     pub(super) fn seen(&self, stage: &Stage, pixel: [u32; 2]) -> Option<usize> {
         let [x, y] = self.source(stage, pixel)?.map(|place| place as f64);
         let (dx, dy) = self.rules.offset;
-        self.textbook(stage).seen(self.direction(stage, [x + dx, y + dy]))
+        self.textbook(stage).seen(&self.ray(stage, [x + dx, y + dy]))
     }
 
     /// Whether `levels` may be what pixel (`i`, `j`) shows: but for rounding, or to the last bit.

@@ -5,6 +5,10 @@ use std::f64::consts::FRAC_PI_4;
 use glam::DVec3;
 
 use crate::scene::{Sphere, Window};
+use crate::view::View;
+
+/// Parallel rays come from so many times as far as the window is large.
+const FAR: f64 = 1e3;
 
 /// The eye's axes and window, with the window at distance 1.
 #[derive(Debug, Clone, Copy)]
@@ -14,6 +18,8 @@ pub(super) struct Frame {
     back: DVec3,
     /// Left and right edge, then bottom and top.
     edges: [[f64; 2]; 2],
+    /// Where rays are parallel, from how far away they are taken to come.
+    far: Option<f64>,
 }
 
 /// The part of a sphere that lies within the window, as if nothing hid it. Lengths and areas are those of the window at distance 1.
@@ -34,9 +40,17 @@ pub(super) struct Outline {
 
 impl Frame {
     /// Of an eye at the origin with these axes: to the right, upwards and against the view.
-    pub(super) fn new([right, up, back]: [DVec3; 3], window: &Window) -> Self {
-        let edges = |a: f64, b: f64| [a.min(b) / window.near, a.max(b) / window.near];
-        Self { right, up, back, edges: [edges(window.left, window.right), edges(window.bottom, window.top)] }
+    pub(super) fn new(view: &View, window: &Window) -> Self {
+        let [right, up, back] = view.axes();
+        let far = view.is_parallel().then(|| FAR * window.greatest());
+        let near = far.unwrap_or(window.near);
+        let edges = |a: f64, b: f64| [a.min(b) / near, a.max(b) / near];
+        Self { far, right, up, back, edges: [edges(window.left, window.right), edges(window.bottom, window.top)] }
+    }
+
+    /// Whether rays are parallel.
+    pub(super) fn is_parallel(&self) -> bool {
+        self.far.is_some()
     }
 
     /// Area of the window.
@@ -67,16 +81,20 @@ impl Frame {
         }
         let is_whole = ends == [2.0; 2];
         let around = 2.0 * FRAC_PI_4 * (2.0 * (sides[0] * sides[0] + sides[1] * sides[1])).sqrt();
-        let direction = self.right * middle[0] + self.up * middle[1] - self.back;
+        let point = self.right * middle[0] + self.up * middle[1];
+        let (start, direction) = match self.far {
+            Some(far) => (point * far, -self.back),
+            None => (DVec3::ZERO, point - self.back),
+        };
         let stretch = direction.length();
-        let along = first_root(center / scale, direction / scale)
-            .unwrap_or_else(|| (center.dot(direction) / (stretch * stretch)).max(f64::MIN_POSITIVE));
+        let along = first_root((center - start) / scale, direction / scale)
+            .unwrap_or_else(|| ((center - start).dot(direction) / (stretch * stretch)).max(f64::MIN_POSITIVE));
         Some(Outline {
             area: sides[0] * sides[1] * if is_whole { FRAC_PI_4 } else { 1.0 },
             perimeter: if is_whole { around } else { around.min(2.0 * (sides[0] + sides[1])) },
             silhouette: FRAC_PI_4 * (ends[0] * sides[1] + ends[1] * sides[0]),
-            place: direction * along,
-            distance: along * stretch,
+            place: start + direction * along,
+            distance: self.far.unwrap_or(along * stretch),
             stretch,
         })
     }
@@ -84,6 +102,10 @@ impl Frame {
     /// From where to where along `axis` an ellipsoid that is not behind the eye reaches: the planes through the eye and across
     /// the axis that touch it, v·P = 0 with v = axis + m back, for which (v·c)² = |S v|².
     fn bounds(&self, axis: DVec3, center: DVec3, scale: DVec3) -> [f64; 2] {
+        if let Some(far) = self.far {
+            let (middle, half) = (axis.dot(center), (scale * axis).length());
+            return [middle - half, middle + half].map(|end| end / far);
+        }
         let everything = [f64::NEG_INFINITY, f64::INFINITY];
         let (across, depth) = (axis.dot(center), self.back.dot(center));
         let (thick, deep) = (scale * axis, scale * self.back);

@@ -20,6 +20,7 @@ use super::outline::{Frame, Outline};
 use super::{Extreme, Tier};
 use crate::effects::{Effect, Effects};
 use crate::scene::{Scene, Sphere};
+use crate::view::View;
 
 /// Levels of all channels that a colour passes between black and white.
 const LEVELS: f64 = 3.0 * 255.0;
@@ -115,7 +116,8 @@ struct Seen {
     /// Greatest and least semi-axis.
     long: f64,
     short: f64,
-    /// |c| + r + d.
+    /// d, and |c| + r + d.
+    depth: f64,
     reach: f64,
     /// Whether the eye is within.
     is_inside: bool,
@@ -258,8 +260,8 @@ struct OnSphere {
 }
 
 impl<'a> Shares<'a> {
-    /// Of `scene`, whose eye is at the origin, seen along these axes.
-    pub(super) fn new(scene: &'a Scene, axes: [DVec3; 3], effects: &Effects) -> Self {
+    /// Of `scene`, whose eye is at the origin, in this view.
+    pub(super) fn new(scene: &'a Scene, view: &View, effects: &Effects) -> Self {
         let on = |effect| if effects.set.has(effect) { 1.0 } else { 0.0 };
         let effects = Active {
             ambient: mean(scene.ambient) * on(Effect::Ambient),
@@ -274,7 +276,7 @@ impl<'a> Shares<'a> {
             scene,
             lights: scene.lights.iter().map(|light| (light.position, mean(light.intensity))).collect(),
             effects,
-            frame: Frame::new(axes, &scene.window),
+            frame: Frame::new(view, &scene.window),
             precisions: Tier::ALL.map(Precision::of),
         }
     }
@@ -302,12 +304,14 @@ impl<'a> Shares<'a> {
         let outline = self.frame.outline(sphere)?;
         let (long, short) = axes_of(sphere);
         let center = sphere.center.length();
+        let depth = if self.frame.is_parallel() { center } else { outline.distance };
         Some(Seen {
             outline,
             long,
             short,
-            reach: center + long + outline.distance,
-            is_inside: (sphere.center / sphere.scale).length() < 1.0,
+            reach: center + long + depth,
+            depth,
+            is_inside: !self.frame.is_parallel() && (sphere.center / sphere.scale).length() < 1.0,
         })
     }
 
@@ -464,8 +468,7 @@ impl<'a> Shares<'a> {
     fn add_nested(&self, nested: &[(usize, f64)], sums: &mut Sums) {
         for &(index, gap) in nested {
             let Some(seen) = self.seen(&self.scene.spheres[index]) else { continue };
-            let is_lost =
-                |p: Precision| gap < 4.0 * (p.places * seen.reach).max(0.25 * p.order * seen.outline.distance);
+            let is_lost = |p: Precision| gap < 4.0 * (p.places * seen.reach).max(0.25 * p.order * seen.depth);
             sums.change(index, 1.0, self.precisions.map(|p| if is_lost(p) { seen.outline.area } else { 0.0 }));
         }
     }

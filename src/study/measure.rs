@@ -13,6 +13,7 @@ use crate::effects::{Effect, EffectSet, Effects};
 use crate::engine::Backend;
 use crate::film::Picture;
 use crate::gpu::{DeviceInfo, Error, Gpu};
+use crate::pattern::Pattern;
 use crate::precision::Selection;
 use crate::report::{Skipped, Timings};
 use crate::scene::Scene;
@@ -31,8 +32,8 @@ pub struct StudyPlan {
     pub seconds: f64,
     /// Reflection depths to compare; empty: from 0 to the greatest that can matter.
     pub depths: Vec<u32>,
-    /// Sides of the grids of samples to compare.
-    pub sides: Vec<u32>,
+    /// Numbers of samples to compare, in ascending order.
+    pub patterns: Vec<Pattern>,
 }
 
 impl StudyPlan {
@@ -218,9 +219,9 @@ pub fn study(input: &StudyInput, plan: &StudyPlan, mut hear: impl FnMut(Event)) 
     })?;
     hear(Event::Measured(&study));
 
-    let with_side = |samples| Settings { samples_per_side: samples, ..base };
-    let finer = with_side((plan.sides.iter().max().copied().unwrap_or(1) * 2).min(Settings::MAX_SAMPLES_PER_SIDE));
-    let variants: Vec<_> = plan.sides.iter().map(|&side| with_side(side)).collect();
+    let with_pattern = |pattern| Settings { pattern, ..base };
+    let finer = with_pattern(plan.patterns.last().copied().unwrap_or(Pattern::ONE).finer());
+    let variants: Vec<_> = plan.patterns.iter().copied().map(with_pattern).collect();
     study.samples = series(input, plan, &mut contestants, &mut study.skipped, &variants, Some(finer), |within| {
         hear(Event::Done((2.0 + within) / PARTS));
     })?;
@@ -285,8 +286,7 @@ fn series(
     }
     Ok(Series {
         runs,
-        truth: truth
-            .map(|(settings, _)| Truth { depth: settings.max_depth, samples: settings.samples_per_side.pow(2) }),
+        truth: truth.map(|(settings, _)| Truth { depth: settings.max_depth, samples: settings.pattern.count() }),
         points: measured.into_iter().map(|(_, point)| point).collect(),
     })
 }
@@ -322,7 +322,7 @@ fn warm_up<'a>(
     let point = Point {
         contestant,
         depth: settings.max_depth,
-        samples: settings.samples_per_side.pow(2),
+        samples: settings.pattern.count(),
         wall: Timings::default(),
         on_device: run.device_ms.map(|_| Timings::default()),
         not_finite: run.not_finite,

@@ -102,7 +102,7 @@ fn word(choice: &impl serde::Serialize) -> String {
 }
 
 fn facts(study: &Study) -> Markup {
-    let Settings { view, sampling, quantize, secondary, specular, max_depth, samples_per_side } = study.settings;
+    let Settings { view, sampling, quantize, secondary, specular, max_depth, pattern } = study.settings;
     html! {
         dl {
             dt { "Picture" }
@@ -122,7 +122,7 @@ fn facts(study: &Study) -> Markup {
             dd {
                 (word(&sampling)) " sampling, quantize " (word(&quantize)) ", secondary epsilon "
                 (secondary.shadow) " for shadows and " (secondary.reflection) " for reflections, "
-                (word(&specular)) ", depth " (max_depth) ", " (samples_per_side.pow(2)) " spp"
+                (word(&specular)) ", depth " (max_depth) ", " (pattern.count()) " spp"
             }
             dt { "Tier for it" }
             dd { (study.selection.tier) ": " (study.selection.reason) }

@@ -145,7 +145,7 @@ pub fn csv(studies: &[Study]) -> String {
                 "effects".to_owned(),
                 variant.name.clone(),
                 study.settings.max_depth.to_string(),
-                study.settings.samples_per_side.pow(2).to_string(),
+                study.settings.pattern.count().to_string(),
             ];
             fields.extend(times(&variant.render));
             fields.extend(std::iter::repeat_n(String::new(), 13));
@@ -198,9 +198,8 @@ fn fields(name: &str, series: &Series, point: &Point) -> Vec<String> {
 }
 
 fn partial_fields(study: &Study, point: &PartialPoint) -> Vec<String> {
-    let Settings { max_depth, samples_per_side, .. } = study.settings;
-    let mut fields =
-        vec!["partial".to_owned(), point.name(), max_depth.to_string(), samples_per_side.pow(2).to_string()];
+    let Settings { max_depth, pattern, .. } = study.settings;
+    let mut fields = vec!["partial".to_owned(), point.name(), max_depth.to_string(), pattern.count().to_string()];
     fields.extend(times(&point.wall));
     let Distance { differing, max_level, mean_level, rms_level, .. } = point.error;
     fields.extend([String::new(), differing.to_string(), max_level.to_string(), mean_level.to_string()]);

@@ -2,6 +2,7 @@
 
 use super::view_state::ViewState;
 use crate::effects;
+use crate::pattern::Pattern;
 use crate::precision;
 use crate::settings::{Convention, Settings};
 
@@ -10,13 +11,13 @@ impl ViewState {
     pub fn options(&self, size: Option<(u32, u32)>) -> String {
         let mut options = Vec::new();
         let classic = Settings::classic();
-        let Settings { sampling, quantize, secondary, specular, max_depth, samples_per_side, .. } = self.settings;
+        let name = |value: serde_json::Result<serde_json::Value>| {
+            value.ok().and_then(|value| value.as_str().map(str::to_owned)).unwrap_or_default()
+        };
+        let Settings { sampling, quantize, secondary, specular, max_depth, pattern, .. } = self.settings;
         if self.settings.convention() == Some(Convention::Exact) {
             options.push("--convention exact".into());
         } else {
-            let name = |value: serde_json::Result<serde_json::Value>| {
-                value.ok().and_then(|value| value.as_str().map(str::to_owned)).unwrap_or_default()
-            };
             if sampling != classic.sampling {
                 options.push(format!("--sampling {}", name(serde_json::to_value(sampling))));
             }
@@ -33,8 +34,11 @@ impl ViewState {
         if max_depth != classic.max_depth {
             options.push(format!("--max-depth {max_depth}"));
         }
-        if samples_per_side != classic.samples_per_side {
-            options.push(format!("--spp {}", samples_per_side.pow(2)));
+        if let Pattern::Fibonacci { filter, .. } = pattern {
+            options.push(format!("--pattern fibonacci --filter {}", name(serde_json::to_value(filter))));
+        }
+        if pattern.count() > 1 {
+            options.push(format!("--spp {}", pattern.count()));
         }
         if self.effects != effects::Request::Auto {
             options.push(format!("--effects={}", self.effects));

@@ -22,6 +22,7 @@ use crate::engine::{Backend, ms};
 use crate::gpu::{self, Gpu};
 use crate::kept::Kept;
 use crate::limits;
+use crate::pattern::Pattern;
 use crate::precision::{Selection, Tier};
 use crate::scene::Scene;
 use crate::settings::Settings;
@@ -48,7 +49,7 @@ struct Job {
     selection: Selection,
     size: (u32, u32),
     /// Coarse steps and samples (on each side of a pixel) of the pictures to come, last one first.
-    passes: Vec<(u32, u32)>,
+    passes: Vec<(u32, Pattern)>,
     /// What of the first of them is shown at once, where it is not all.
     map: Option<Arc<PreviewMap>>,
     /// Time that all this took, in ms; counted with the first picture.
@@ -247,10 +248,9 @@ impl<'g> SessionRenderer<'g> {
             self.canvas = Canvas::new(size);
         }
         let limit = FRAME_MS / context.busy.max(1) as f64;
-        let samples = settings.samples_per_side;
-        let mut passes = vec![(1, samples)];
-        if samples > 1 {
-            passes.push((1, 1));
+        let mut passes = vec![(1, settings.pattern)];
+        if settings.pattern.count() > 1 {
+            passes.push((1, Pattern::ONE));
         }
         let mut step = self.costs.step(size, limit);
         let mut map = None;
@@ -264,7 +264,7 @@ impl<'g> SessionRenderer<'g> {
         }
         let mut coarse = Vec::new();
         while step > 1 {
-            coarse.push((step, 1));
+            coarse.push((step, Pattern::ONE));
             // Each step takes a fraction of the time of the next.
             let worth_it = self.costs.forecast(size, 1) > COARSE_FIRST_MS && self.costs.prepare_ms < SLICE_MS;
             step = if worth_it { (step / 4).max(1) } else { 1 };

@@ -74,7 +74,7 @@ impl ViewState {
             view.settings.max_depth = depth;
         }
         if let Some(count) = *spp {
-            view.settings.samples_per_side = Settings::samples_per_side_of(count)?;
+            view.settings.pattern = view.settings.pattern.with_count(count)?;
         }
         if let Some(text) = res {
             view.res =

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use glam::DVec3;
 
 use crate::scene::{Fov, Scene, Window};
-use crate::view::{View, ViewError};
+use crate::view::{Projection, View, ViewError};
 
 pub use table::table;
 pub use turntable::{NoCenter, turntable};
@@ -24,6 +24,8 @@ pub struct Placement {
     pub up: DVec3,
     /// The field of view, where it takes the place of the scene's window.
     pub fov: Option<Fov>,
+    /// How the world is projected.
+    pub projection: Projection,
 }
 
 impl Placement {
@@ -33,7 +35,8 @@ impl Placement {
     ///
     /// Where these define none.
     pub fn view(&self) -> Result<View, ViewError> {
-        View::new(self.eye, self.look_at, self.up)
+        let view = View::new(self.eye, self.look_at, self.up)?.projected(self.projection);
+        if view.is_parallel() && self.fov.is_some() { Err(ViewError::FovOfParallel) } else { Ok(view) }
     }
 }
 

@@ -152,7 +152,8 @@ impl Reader<'_> {
         if self.collector.error_count() > errors {
             return None;
         }
-        let placement = Placement { eye: vector(EYE, self.given.eye), look_at, up: vector(UP, self.given.up), fov };
+        let (eye, up, projection) = (vector(EYE, self.given.eye), vector(UP, self.given.up), self.given.projection);
+        let placement = Placement { eye, look_at, up, fov, projection };
         match placement.view() {
             Ok(view) => Some(Frame { view, size, fov, window, scene }),
             Err(why) => {

@@ -9,6 +9,7 @@ use trueray::cpu::{PixelRecord, picked};
 use trueray::effects::Effects;
 use trueray::film::Picture;
 use trueray::gpu::Gpu;
+use trueray::pattern::Pattern;
 use trueray::scene::Scene;
 use trueray::settings::Settings;
 use trueray::{DVec3, Tier, View};
@@ -287,7 +288,7 @@ fn assert_told(what: &str, gpu: &Gpu, tier: Tier, scene: &Scene, settings: &Sett
     let all = [&TOLD[..], &[Aov::Bounce, Aov::Rays, Aov::Tests, Aov::Margin, Aov::Step, Aov::Error]].concat();
     let found = device.layers(&inspector(scene, settings).0, &all).unwrap();
     let told: Vec<Aov> = TOLD.into_iter().filter(|&aov| device.tells(aov)).collect();
-    assert_eq!(told.len(), if settings.samples_per_side > 1 { 5 } else { TOLD.len() }, "{what}");
+    assert_eq!(told.len(), if settings.pattern.count() > 1 { 5 } else { TOLD.len() }, "{what}");
     let expected = layers_of(scene, settings, &told).unwrap();
     let names = |layers: &[Layer]| layers.iter().map(|layer| layer.name.clone()).collect::<Vec<_>>();
     assert_eq!(names(&found), names(&expected), "{what}");
@@ -320,8 +321,9 @@ fn what_a_device_tells_is_the_references_to_within_rounding() {
     for name in ["effects/everything.txt", "effects/refraction.txt", "show/showcase.txt", "basic/ellipsoid.txt"] {
         let scene = small(name);
         for &tier in device.ladder() {
-            for settings in [Settings::classic(), Settings { samples_per_side: 2, ..Settings::exact() }] {
-                let what = format!("{name} at {tier}, {} samples", settings.samples_per_side.pow(2));
+            for settings in [Settings::classic(), Settings { pattern: Pattern::Grid { side: 2 }, ..Settings::exact() }]
+            {
+                let what = format!("{name} at {tier}, {} samples", settings.pattern.count());
                 assert_told(&what, &device, tier, &scene, &settings);
             }
             let moved = Settings { view: eye, ..Settings::exact() };

@@ -7,7 +7,7 @@ use trueray::effects::Effects;
 use trueray::scene::Scene;
 use trueray::settings::Settings;
 
-use crate::support::{scene, scene_files};
+use crate::support::{orthographic, scene, scene_files, widened};
 
 /// What the unit roundoff of `f64` is to that of `f32`, and more.
 const OTHERS: f64 = 1e-8;
@@ -61,6 +61,7 @@ fn no_colour_is_farther_off_than_the_bound() {
         let name = file.file_stem().unwrap().to_string_lossy().into_owned();
         for settings in [Settings::classic(), Settings::exact()] {
             count.add(&name, &small(scene(&file), 3000), &settings);
+            count.add(&name, &small(widened(scene(&file)), 3000), &orthographic(settings));
         }
     }
     assert!(count.different > 100, "{} of {} differ: nothing is shown", count.different, count.pixels);

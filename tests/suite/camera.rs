@@ -12,10 +12,11 @@ use trueray::cpu::{Judge, Reference};
 use trueray::effects::{EffectSet, Effects, Request};
 use trueray::engine::Backend;
 use trueray::film::Picture;
+use trueray::pattern::{Filter, Pattern};
 use trueray::precision::Tier;
 use trueray::scene::{Fov, Scene, Window};
 use trueray::settings::{SampleOffset, Settings};
-use trueray::view::{View, ViewError};
+use trueray::view::{Projection, View, ViewError};
 
 use crate::support::{cpu_picture, gpu, gpu_picture, scaled, scene_of};
 
@@ -293,11 +294,20 @@ proptest! {
         flip in any::<[bool; 2]>(),
         (width, height) in (1_u32..200, 1_u32..150),
         sampling in prop::sample::select(vec![SampleOffset::Corner, SampleOffset::BottomLeft, SampleOffset::Center]),
-        samples in 1_u32..4,
+        pattern in prop::sample::select(vec![
+            Pattern::ONE,
+            Pattern::Grid { side: 2 },
+            Pattern::Grid { side: 3 },
+            Pattern::Fibonacci { count: 3, filter: Filter::Box },
+            Pattern::Fibonacci { count: 2, filter: Filter::Tent },
+            Pattern::Fibonacci { count: 4, filter: Filter::Gaussian },
+        ]),
         longest_tile in prop::sample::select(vec![0.0, 1.0, 1e9]),
         near in prop::sample::select(vec![1e-3, 0.1, 1.0, 2.0]),
+        projection in prop::sample::select(vec![Projection::Perspective, Projection::Orthographic]),
     ) {
         let Ok(view) = View::new(DVec3::ZERO, Some(ahead.into()), up.into()) else { return Ok(()) };
+        let view = view.projected(projection);
         // The places above are those in the picture's axes, so that the spheres are mostly in view.
         let [right, upwards, back] = view.axes();
         let line = |(p, s): &([f64; 3], [f64; 3])| {
@@ -307,22 +317,23 @@ proptest! {
         let mut scene = scene_of(&(spheres.iter().map(line).collect::<String>() + "AMBIENT 1 1 1"));
         (scene.width, scene.height) = (width, height);
         scene.window.near = near;
-        let side = |low: f64, size: f64, flip| if flip { (low + size, low) } else { (low, low + size) };
-        (scene.window.left, scene.window.right) = side(window[0], size[0], flip[0]);
-        (scene.window.bottom, scene.window.top) = side(window[1], size[1], flip[1]);
-        let settings = Settings { sampling, samples_per_side: samples, view, ..Settings::classic() };
+        let ends = |low: f64, size: f64, flip| if flip { (low + size, low) } else { (low, low + size) };
+        (scene.window.left, scene.window.right) = ends(window[0], size[0], flip[0]);
+        (scene.window.bottom, scene.window.top) = ends(window[1], size[1], flip[1]);
+        let settings = Settings { sampling, pattern, view, ..Settings::classic() };
         let density = Density { longest_tile, ..Density::DEFAULT };
         let viewed = scene.viewed(&settings);
-        let camera = Camera::new(&viewed);
+        let (camera, side) = (Camera::new(&viewed), pattern.side());
 
         for rounding in [Rounding::SINGLE, Rounding::COMPENSATED, Rounding::DOUBLE] {
             let lists = Acceleration::with_density(&viewed, EffectSet::ALL, rounding, &density).screen;
-            for j in 0..height * samples {
-                for i in 0..width * samples {
-                    let ray = camera.column(i) + camera.row(j);
+            for j in 0..height * side {
+                for i in 0..width * side {
+                    let sum = camera.column(i) + camera.row(j);
+                    let (start, ray) = if camera.is_parallel() { (sum, camera.direction()) } else { (DVec3::ZERO, sum) };
                     for (index, sphere) in scene.spheres.iter().enumerate() {
-                        if sees(ray, sphere) {
-                            let listed = lists.at(i / samples, j / samples);
+                        if sees(start, ray, sphere) {
+                            let listed = lists.at(i / side, j / side);
                             prop_assert!(listed.contains(&(index as u32)), "sample {i} {j} sphere {index}");
                         }
                     }
@@ -340,9 +351,9 @@ proptest! {
     }
 }
 
-/// Whether a ray from the eye meets the sphere at t ≥ 1.
-fn sees(ray: DVec3, sphere: &trueray::scene::Sphere) -> bool {
-    let (s, d) = (sphere.center / sphere.scale, ray / sphere.scale);
+/// Whether a ray from this place meets the sphere at t ≥ 1.
+fn sees(start: DVec3, ray: DVec3, sphere: &trueray::scene::Sphere) -> bool {
+    let (s, d) = ((sphere.center - start) / sphere.scale, ray / sphere.scale);
     let (a, b, c) = (d.length_squared(), s.dot(d), s.length_squared() - 1.0);
     let discriminant = b * b - a * c;
     discriminant >= 0.0 && b + discriminant.sqrt() >= a

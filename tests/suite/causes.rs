@@ -10,6 +10,7 @@ use trueray::cpu::{Judge, Reference};
 use trueray::effects::Effects;
 use trueray::film::Picture;
 use trueray::mistakes::{CAUSES, Diagnosis, Role, diagnose, diagnose_size, planted, plants};
+use trueray::pattern::Pattern;
 use trueray::precision::Tier;
 use trueray::scene::Scene;
 use trueray::settings::{Quantize, SampleOffset, Settings, Specular};
@@ -109,8 +110,11 @@ const SCENES: [&str; 7] = [
 fn the_textbook_is_the_reference() {
     let is_small = |file: &PathBuf| !file.ends_with("ten-thousand-spheres.txt");
     for file in scene_files(&["basic", "effects", "refraction", "show"]).into_iter().filter(is_small) {
-        for settings in [Settings::classic(), Settings::exact(), Settings { samples_per_side: 2, ..Settings::exact() }]
-        {
+        for settings in [
+            Settings::classic(),
+            Settings::exact(),
+            Settings { pattern: Pattern::Grid { side: 2 }, ..Settings::exact() },
+        ] {
             let case = Case::of(file.to_str().unwrap(), settings);
             let viewed = case.scene.viewed(&settings);
             let reference = Reference::new(&viewed, &Effects::of(&viewed));

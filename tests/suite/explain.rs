@@ -11,12 +11,13 @@ use trueray::cpu::{Dd, Decision, Finding, Judge, Real, Reference};
 use trueray::effects::{Effect, Effects, Request};
 use trueray::engine::Backend;
 use trueray::film::{Format, Picture, Target};
+use trueray::pattern::Pattern;
 use trueray::precision::{self, Selection, Tier};
 use trueray::scene::{Scene, parse};
 use trueray::settings::{Settings, Specular};
 use trueray::stress::Random;
 
-use crate::support::{Case, cpu_picture, gpu, gpu_picture, root, scene, scene_files, scene_of};
+use crate::support::{Case, cpu_picture, gpu, gpu_picture, orthographic, root, scene, scene_files, scene_of, widened};
 
 const FOLDERS: [&str; 5] = ["basic", "effects", "refraction", "hard", "show"];
 
@@ -321,10 +322,13 @@ fn right_pictures_of_random_scenes_are_explained() {
     let gpu = gpu("right_pictures_of_random_scenes_are_explained");
     let (mut pixels, mut differing) = (0, 0);
     for seed in 0..count {
-        let scene = random_scene(seed, width);
-        for settings in conventions() {
-            let deep = Settings { samples_per_side: 2, specular: Specular::Blinn, max_depth: 5, ..settings };
-            let case = Case::new(&scene, if seed % 5 == 4 { &deep } else { &settings });
+        let eyed = random_scene(seed, width);
+        let wide = widened(eyed.clone());
+        let [classic, exact] = conventions();
+        for (scene, settings) in [(&eyed, classic), (&eyed, exact), (&wide, orthographic(exact))] {
+            let deep =
+                Settings { pattern: Pattern::Grid { side: 2 }, specular: Specular::Blinn, max_depth: 5, ..settings };
+            let case = Case::new(scene, if seed % 5 == 4 { &deep } else { &settings });
             let name = |what| format!("seed {seed}, {:?}, {what}", settings.sampling);
             let mut pictures = vec![
                 ("f32", picture::<f32>(&case), Judge::of(Tier::Fast)),
@@ -333,7 +337,7 @@ fn right_pictures_of_random_scenes_are_explained() {
             ];
             if let Some(gpu) = &gpu {
                 for tier in Tier::ALL.into_iter().filter(|&tier| gpu.kernel(tier).is_ok()) {
-                    let (picture, _) = gpu_picture(gpu, tier, &scene, &case.settings, &case.effects);
+                    let (picture, _) = gpu_picture(gpu, tier, scene, &case.settings, &case.effects);
                     pictures.push((tier.name(), picture, Backend::Device(gpu, tier).judge()));
                 }
             }

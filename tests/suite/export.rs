@@ -7,6 +7,7 @@ use trueray::compare::Difference;
 use trueray::effects::Effects;
 use trueray::export::{Export, Obstacle, Peer, export};
 use trueray::film::{Leniency, Picture, read_picture};
+use trueray::pattern::Pattern;
 use trueray::scene::Scene;
 use trueray::settings::{Quantize, SampleOffset, Settings, Specular};
 
@@ -175,7 +176,8 @@ fn what_cannot_be_expressed_is_named() {
     let several = format!("{MIRRORS}{}BACK 1 1 1", BALL.replace("2 2 2", "2 1 2"));
     assert_eq!(obstacles(&several, Peer::Tachyon).len(), 2);
     let grid =
-        written(&scene_of(BALL), &Settings { samples_per_side: 2, ..Settings::classic() }, Peer::PovRay).unwrap_err();
+        written(&scene_of(BALL), &Settings { pattern: Pattern::Grid { side: 2 }, ..Settings::classic() }, Peer::PovRay)
+            .unwrap_err();
     assert!(matches!(&grid[..], [Obstacle::Settings(what)] if what.contains("one sample a pixel")), "{grid:?}");
 }
 

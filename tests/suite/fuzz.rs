@@ -11,6 +11,7 @@ use trueray::engine::{Backend, Engine, render_picture};
 use trueray::film::{Encoded, Leniency, decode};
 use trueray::import::{Format, Frames, Import, Options};
 use trueray::limits;
+use trueray::pattern::{Filter, Pattern};
 use trueray::precision::{Request, Selection, Tier};
 use trueray::scene::{foreign_kind, parse};
 use trueray::settings::{Quantize, SampleOffset, Settings, Specular};
@@ -170,11 +171,18 @@ fn settings() -> impl Strategy<Value = Settings> {
     let sampling = proptest::sample::select(vec![SampleOffset::Corner, SampleOffset::BottomLeft, SampleOffset::Center]);
     let quantize = proptest::sample::select(vec![Quantize::Truncate, Quantize::Round, Quantize::Overscale]);
     let depth = proptest::sample::select(vec![0, 1, 3, 6]);
-    (any::<bool>(), sampling, quantize, any::<bool>(), depth, 1..3_u32).prop_map(
-        |(is_exact, sampling, quantize, is_blinn, max_depth, samples_per_side)| {
+    let fibonacci = |count, filter| Pattern::Fibonacci { count, filter };
+    let pattern = proptest::sample::select(vec![
+        Pattern::ONE,
+        Pattern::Grid { side: 2 },
+        fibonacci(3, Filter::Box),
+        fibonacci(5, Filter::Gaussian),
+    ]);
+    (any::<bool>(), sampling, quantize, any::<bool>(), depth, pattern).prop_map(
+        |(is_exact, sampling, quantize, is_blinn, max_depth, pattern)| {
             let base = if is_exact { Settings::exact() } else { Settings::classic() };
             let specular = if is_blinn { Specular::Blinn } else { Specular::Phong };
-            Settings { sampling, quantize, specular, max_depth, samples_per_side, ..base }
+            Settings { sampling, quantize, specular, max_depth, pattern, ..base }
         },
     )
 }

@@ -7,6 +7,7 @@ use trueray::effects::Effects;
 use trueray::engine::{Backend, Engine, Options, Rows, render_bands, render_picture};
 use trueray::film::Picture;
 use trueray::linear::Linear;
+use trueray::pattern::Pattern;
 use trueray::precision::Tier;
 use trueray::scene::Scene;
 use trueray::settings::{Quantize, Settings};
@@ -81,7 +82,7 @@ fn rendered(engine: &mut Engine) -> (Vec<u8>, Vec<Linear>) {
 }
 
 fn settings(spp: u32) -> Settings {
-    Settings { samples_per_side: spp, ..Settings::default() }
+    Settings { pattern: Pattern::Grid { side: spp }, ..Settings::default() }
 }
 
 fn reference(scene: &Scene, settings: &Settings) -> Vec<Linear> {
@@ -162,7 +163,7 @@ fn coverage_is_the_part_of_the_samples_that_hit() {
     let seen = |line: &str, spp| {
         let mut scene = scene_of(&format!("{line}\nAMBIENT 1 1 1\nBACK 0.5 0.25 1\n"));
         (scene.width, scene.height) = (4, 4);
-        reference(&scene, &Settings { samples_per_side: spp, ..Settings::exact() })
+        reference(&scene, &Settings { pattern: Pattern::Grid { side: spp }, ..Settings::exact() })
     };
     let ball = "SPHERE ball 0 0 -3 1 1 1 1 1 1 1 0 0 0 1";
     let near = "SPHERE near 0 0 -3 1 1 1 1 1 1 0 0 0 0 1 1 1.5";

@@ -9,6 +9,7 @@ use trueray::effects::{EffectSet, Effects};
 use trueray::engine::{Backend, Engine, Options, render_picture};
 use trueray::gpu::{Gpu, GpuRenderer, Kernel};
 use trueray::kept::Kept;
+use trueray::pattern::Pattern;
 use trueray::precision::{Request, Selection, Tier};
 use trueray::scene::{Scene, Sphere};
 use trueray::settings::Settings;
@@ -108,7 +109,7 @@ fn settings_of(seed: u64) -> Settings {
     let settings = if (seed / KINDS).is_multiple_of(2) { Settings::classic() } else { Settings::exact() };
     Settings {
         max_depth: [3, 0, 1, 8][(seed / KINDS % 4) as usize],
-        samples_per_side: 1 + u32::from(seed % 23 == 22),
+        pattern: Pattern::Grid { side: 1 + u32::from(seed % 23 == 22) },
         ..settings
     }
 }
@@ -303,7 +304,7 @@ fn many_bounces_in_place_are_walked_at_once_instead() {
             "SPHERE s 0 0 -3 10 10 10 1 1 1 1 0.5 0 1 10\nAMBIENT {ambient} {ambient} {ambient}\n{lights}"
         ));
         (scene.width, scene.height) = (8, 8);
-        let settings = Settings { samples_per_side: samples, max_depth, ..Settings::classic() };
+        let settings = Settings { pattern: Pattern::Grid { side: samples }, max_depth, ..Settings::classic() };
         let [at_once, in_turn, in_place] = walked(&mut gpu, &scene, &settings);
         assert_eq!(first_difference(&at_once, &in_turn, &scene), None);
         assert_eq!(first_difference(&at_once, &in_place, &scene), None);

@@ -45,11 +45,13 @@ mod oracle;
 mod page;
 mod parse;
 mod parts;
+mod pattern;
 mod phong;
 mod pictures;
 mod pixel;
 #[cfg(feature = "view")]
 mod preview;
+mod projection;
 mod proof;
 mod rays;
 mod refraction;

@@ -8,6 +8,7 @@ use trueray::effects::{Effect, EffectSet, Effects, Request};
 use trueray::engine::{Backend, Engine, Filler, Options, Pixels, render_partial, render_picture};
 use trueray::gpu::{Batch, Error, Kernel, ProbeRay, Prober, Question, RawBatch, Surface, echo_layout};
 use trueray::misuse::Misuse;
+use trueray::pattern::Pattern;
 use trueray::precision::Tier;
 use trueray::sampling::{Density, Fill, MAX_PIXELS, MAX_SIDE, Samples};
 use trueray::scene::{MAX_RESOLUTION, Scene};
@@ -82,8 +83,8 @@ fn pictures_out_of_range_are_refused() {
             (sized(0, 40), settings, "width"),
             (sized(40, 0), settings, "height"),
             (sized(MAX_RESOLUTION + 1, 1), settings, "width"),
-            (sized(40, 40), Settings { samples_per_side: 0, ..settings }, "samples"),
-            (sized(40, 40), Settings { samples_per_side: Settings::MAX_SAMPLES_PER_SIDE + 1, ..settings }, "samples"),
+            (sized(40, 40), Settings { pattern: Pattern::Grid { side: 0 }, ..settings }, "samples"),
+            (sized(40, 40), Settings { pattern: Pattern::Grid { side: Pattern::MAX_SIDE + 1 }, ..settings }, "samples"),
             (sized(40, 40), Settings { max_depth: Settings::MAX_DEPTH + 1, ..settings }, "max_depth"),
         ] {
             let error = Engine::new(backend, scene.viewed(&settings), &effects).unwrap_err();

@@ -86,7 +86,7 @@ fn each_pixel_of_a_part_is_that_of_the_picture_whatever_renders() {
             }
             assert_eq!(parts.last().unwrap().1, rays, "the whole as a part");
             let primary = parts[0].1.unwrap().primary;
-            assert_eq!(primary, u64::from(settings.samples_per_side).pow(2), "a pixel");
+            assert_eq!(primary, u64::from(settings.pattern.count()), "a pixel");
         }
     }
 }

@@ -9,6 +9,7 @@ use glam::DVec3;
 use trueray::cpu::{Dd, Real, Reference};
 use trueray::effects::Effects;
 use trueray::gpu::Gpu;
+use trueray::pattern::{Filter, Pattern};
 use trueray::precision::Tier;
 use trueray::scene::{Scene, parse};
 use trueray::settings::{Quantize, SampleOffset, Secondary, Settings, Specular};
@@ -400,6 +401,18 @@ fn a_sample_lies_where_the_settings_say() {
     check("a_sample_lies_where_the_settings_say", &cases, Ways::Tuned);
 }
 
+/// Patterns that are no grid, with the places of their samples from the middle of the pixel, by hand: those of the box from the order of
+/// i·0.618 without whole parts, those of the tent at 1 − √(1/3), those of the Gaussian where a quarter of it is cut off.
+fn scattered() -> [(Pattern, Vec<[f64; 2]>); 3] {
+    let fibonacci = |count, filter| Pattern::Fibonacci { count, filter };
+    let (a, b) = (1.0 - (1.0_f64 / 3.0).sqrt(), 0.330_362_271_5);
+    [
+        (fibonacci(4, Filter::Box), vec![[-0.375, 0.125], [-0.125, -0.375], [0.125, 0.375], [0.375, -0.125]]),
+        (fibonacci(3, Filter::Tent), vec![[-a, 0.0], [0.0, -a], [a, a]]),
+        (fibonacci(2, Filter::Gaussian), vec![[-b, b], [b, -b]]),
+    ]
+}
+
 /// A ball on each sample's ray, each of its own colour, some brighter than white; and a sample that sees the background.
 #[test]
 fn a_pixel_is_the_mean_of_its_samples() {
@@ -421,7 +434,23 @@ fn a_pixel_is_the_mean_of_its_samples() {
                 sum += ambient(&material);
             }
             let case = case(format!("{side} x {side}"), AXIS, statements, sum / f64::from(side * side));
-            cases.push(case.only(&name).with(|settings| settings.samples_per_side = side));
+            cases.push(case.only(&name).with(|settings| settings.pattern = Pattern::Grid { side }));
+        }
+        for (pattern, middles) in scattered() {
+            let count = middles.len() as f64;
+            let (sx, sy) = settings.sampling.offset();
+            let mut statements = Vec::new();
+            let mut sum = BACK;
+            for (sample, [across, down]) in middles.iter().enumerate().skip(1) {
+                let (i, j) = (0.5 + across + (sx - 0.5) / count, 0.5 + down + (sy - 0.5) / count);
+                let (x, y) = (AXIS.x + (i - sx) * width, AXIS.y - (j - sy) * width);
+                let color = v(0.3 * sample as f64, 1.7 / sample as f64, 0.1 * sample as f64);
+                let material = Material { color, ..FLAT };
+                statements.push(ball(4.0 * v(x, y, -1.0), 0.01, &material));
+                sum += ambient(&material);
+            }
+            let case = case(format!("{pattern:?}"), AXIS, statements, sum / count);
+            cases.push(case.only(&name).with(|settings| settings.pattern = pattern));
         }
     }
     check("a_pixel_is_the_mean_of_its_samples", &cases, Ways::Tuned);

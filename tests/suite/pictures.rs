@@ -7,6 +7,7 @@ use trueray::effects::{Effect, EffectSet, Effects, Request};
 use trueray::engine::{Backend, Engine, render_bands};
 use trueray::gpu;
 use trueray::gpu::{Ahead, Choice, Gpu, GpuRenderer, Tables};
+use trueray::pattern::Pattern;
 use trueray::precision::{self, Demand, Selection, Tier};
 use trueray::settings::{Settings, Specular};
 use trueray::tuning::{Class, Tuning};
@@ -247,7 +248,7 @@ fn samples_average_an_edge() {
     (scene.width, scene.height) = (3, 3);
     let gpu = gpu("samples_average_an_edge");
     for (side, expected) in [(1, None), (2, Some(128)), (4, Some(128)), (6, Some(128))] {
-        let settings = Settings { samples_per_side: side, ..Settings::exact() };
+        let settings = Settings { pattern: Pattern::Grid { side }, ..Settings::exact() };
         let effects = Effects::of(&scene.viewed(&settings));
         let mut pictures = vec![cpu_picture::<f64>(&scene, &settings, &effects).0];
         if let Some(gpu) = &gpu {
@@ -268,7 +269,7 @@ fn samples_of_one_colour_change_no_level() {
     let Some(gpu) = gpu("samples_of_one_colour_change_no_level") else { return };
     let scene = scene_of("SPHERE s 0 0 -5 0.5 0.5 0.5 1 1 1 1 0 0 0 1\nAMBIENT 1 1 1\nBACK 0.2 0.6 0.1");
     for side in [1, 2, 3, 5] {
-        let settings = Settings { samples_per_side: side, ..Settings::classic() };
+        let settings = Settings { pattern: Pattern::Grid { side }, ..Settings::classic() };
         let effects = Effects::of(&scene.viewed(&settings));
         let background = settings.quantize.levels(scene.background);
         let inside_a_covered_tile = (16, 16);
@@ -285,7 +286,7 @@ fn samples_of_one_colour_change_no_level() {
 fn pictures_of_several_samples_differ_from_the_reference_only_where_explained() {
     let Some(gpu) = gpu("pictures_of_several_samples_differ_from_the_reference_only_where_explained") else { return };
     for (side, base) in [(2, Settings::classic()), (3, Settings::exact())] {
-        let settings = Settings { samples_per_side: side, ..base };
+        let settings = Settings { pattern: Pattern::Grid { side }, ..base };
         for file in scene_files(&["effects"]) {
             let case = Case::new(&scene(&file), &settings);
             let name = format!("{}, {side} × {side} samples", short(&file));

@@ -7,6 +7,7 @@ use serde_json::Value;
 use trueray::cpu::{Decision, Inspector, PixelRecord, RayKind, Reference, SampleRecord, ShadowRecord, Verdict};
 use trueray::effects::Effects;
 use trueray::film::Picture;
+use trueray::pattern::Pattern;
 use trueray::scene::{Scene, parse};
 use trueray::settings::Settings;
 use trueray::{DVec3, Tier, View};
@@ -77,7 +78,7 @@ fn assert_consistent(sample: &SampleRecord, place: &str) {
 
 #[test]
 fn the_record_is_the_pictures_on_all_scenes() {
-    let four = Settings { samples_per_side: 2, ..Settings::exact() };
+    let four = Settings { pattern: Pattern::Grid { side: 2 }, ..Settings::exact() };
     for (name, scene) in scenes(150) {
         for (settings, step) in [(Settings::classic(), 1), (Settings::exact(), 5), (four, 17)] {
             let (inspector, reference) = inspector(&scene, &settings);
@@ -91,7 +92,7 @@ fn the_record_is_the_pictures_on_all_scenes() {
                 assert!(same(record.color, color), "{place}: {:?} for {color:?}", record.color);
                 assert_eq!(record.levels, picture.pixel(x, y), "{place}");
                 assert_eq!(record.scaled.map(|level| level as u8), record.levels, "{place}");
-                assert_eq!(record.samples.len(), settings.samples_per_side.pow(2) as usize);
+                assert_eq!(record.samples.len(), settings.pattern.count() as usize);
                 record.samples.iter().for_each(|sample| assert_consistent(sample, &place));
             }
             assert_eq!(inspector.pixel(scene.width, 0), None);

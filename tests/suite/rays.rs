@@ -2,6 +2,7 @@
 
 use trueray::effects::{Effect, EffectSet, Effects, Request};
 use trueray::engine::{Backend, Engine, Options, Pixels, Rays, render_partial, render_picture};
+use trueray::pattern::Pattern;
 use trueray::precision::Tier;
 use trueray::sampling::{Density, Fill, Samples};
 use trueray::scene::Scene;
@@ -24,7 +25,7 @@ fn counted(backend: Backend, scene: &Scene, settings: &Settings, effects: &Effec
 #[test]
 fn the_device_counts_the_rays_of_the_reference() {
     let Some(gpu) = gpu("the_device_counts_the_rays_of_the_reference") else { return };
-    let three = Settings { samples_per_side: 3, max_depth: 5, ..Settings::exact() };
+    let three = Settings { pattern: Pattern::Grid { side: 3 }, max_depth: 5, ..Settings::exact() };
     for (index, file) in scene_files(&["basic", "effects", "refraction"]).into_iter().enumerate() {
         let mut scene = scene(&file);
         // Parts of tiles at the edges.
@@ -36,7 +37,7 @@ fn the_device_counts_the_rays_of_the_reference() {
             let case = format!("{}, {name}", file.display());
             let effects = Effects::of(&scene.viewed(&settings));
             let (expected, picture) = counted(Backend::Reference, &scene, &settings, &effects);
-            let samples = u64::from(settings.samples_per_side * settings.samples_per_side);
+            let samples = u64::from(settings.pattern.count());
             assert_eq!(expected.primary, 61 * 45 * samples, "{case}");
             let (fast, _) = counted(Backend::Device(&gpu, Tier::Fast), &scene, &settings, &effects);
             assert_eq!(fast.primary, expected.primary, "{case}");
@@ -81,7 +82,7 @@ fn rays_of_a_part_of_the_pixels_are_counted() {
     let scene = scene_of(
         "SPHERE a 0.3 0 -5 1 1 1 1 1 1 0 1 0 0.5 1\nSPHERE b 1.5 0 -4 0.5 0.5 0.5 1 1 1 0 1 0 0.5 1\nLIGHT l 3 4 1 1 1 1",
     );
-    let settings = Settings { samples_per_side: 2, ..Settings::exact() };
+    let settings = Settings { pattern: Pattern::Grid { side: 2 }, ..Settings::exact() };
     let effects = Effects::of(&scene.viewed(&settings));
     let samples = Samples::new((scene.width, scene.height), &Density::sparse(0.2)).unwrap();
     let count = |backend| {
@@ -108,7 +109,7 @@ fn a_pixel_may_take_a_hundred_thousand_rays() {
     (scene.width, scene.height) = (3, 2);
     for settings in [
         Settings { max_depth: 500, ..Settings::exact() },
-        Settings { max_depth: 250, samples_per_side: 2, ..Settings::exact() },
+        Settings { max_depth: 250, pattern: Pattern::Grid { side: 2 }, ..Settings::exact() },
     ] {
         let mut effects = Effects::of(&scene.viewed(&settings));
         effects.set = effects.set.with(Effect::Shadows, true);

@@ -8,6 +8,7 @@ use trueray::cpu::{filled, nearest_samples};
 use trueray::effects::Effects;
 use trueray::engine::{Backend, Engine, Options, render_partial, render_picture};
 use trueray::gpu::Reconstructor;
+use trueray::pattern::Pattern;
 use trueray::precision::Tier;
 use trueray::sampling::{Density, Fill, Fovea, MAX_SIDE, Samples, packed, rank};
 use trueray::scene::Scene;
@@ -183,7 +184,7 @@ fn sampled_pixels_are_those_of_the_full_picture() {
     let gpu = gpu("sampling::sampled_pixels_are_those_of_the_full_picture");
     let many = scene(&root().join("scenes/basic/ten-thousand-spheres.txt"));
     let many = Scene { width: 90, height: 90, ..many };
-    let side = |samples| Settings { samples_per_side: samples, ..Settings::exact() };
+    let side = |samples| Settings { pattern: Pattern::Grid { side: samples }, ..Settings::exact() };
     let mut backends = vec![Backend::Reference];
     backends.extend(gpu.as_deref().into_iter().flat_map(|gpu| Tier::ALL.map(|tier| Backend::Device(gpu, tier))));
     backends.extend(gpu.as_deref().map(|gpu| Backend::Certified(gpu, Tier::Fast)));

@@ -70,6 +70,8 @@ fn specialisation(variant: &Variant, effects: EffectSet, flags: usize) -> Specia
         sphere_count: 3,
         schedule,
         samples,
+        side: samples,
+        parallel: blinn,
         slots,
         certified,
         linear: variant.samples && count_rays,
@@ -614,6 +616,7 @@ fn the_device_reads_every_field_where_the_host_wrote_it() {
         let levels = |[red, green, blue]: [u8; 3]| single(f64::from(u32::from_le_bytes([red, green, blue, 0])));
         expected[0].push(levels(settings.quantize.levels(scene.background)));
         expected[0].push(single(scene.viewed(&settings).moved_by()));
+        expected[0].push(single(Camera::new(&scene.viewed(&settings)).position_error(unit)));
         for (sphere, of) in scene.spheres.iter().zip(1..) {
             expected[of].push(levels(settings.quantize.levels(scene.ambient * sphere.color * sphere.ka)));
         }

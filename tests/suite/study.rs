@@ -4,6 +4,7 @@ use std::process::{Command, Output, Stdio};
 
 use trueray::effects::{Effect, Effects};
 use trueray::gpu::Gpu;
+use trueray::pattern::Pattern;
 use trueray::precision::{Request, Selection, Tier};
 use trueray::sampling::Fill;
 use trueray::scene::Scene;
@@ -62,7 +63,17 @@ fn measure(scene: &Scene, gpu: Option<&Gpu>, settings: &Settings) -> Study {
     let selection = Selection::of(&viewed, &Effects::of(&viewed), Request::Auto, &Tier::ALL);
     let input =
         StudyInput { name: "tiny, <scene>", scene, settings, effects: &Effects::of, gpu, selection: &selection };
-    study(&input, &StudyPlan { runs: 1, seconds: 0.0, depths: Vec::new(), sides: vec![1, 2] }, |_| ()).unwrap()
+    study(
+        &input,
+        &StudyPlan {
+            runs: 1,
+            seconds: 0.0,
+            depths: Vec::new(),
+            patterns: vec![Pattern::ONE, Pattern::Grid { side: 2 }],
+        },
+        |_| (),
+    )
+    .unwrap()
 }
 
 #[test]

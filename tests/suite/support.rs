@@ -18,6 +18,7 @@ use trueray::gpu::{Choice, Gpu};
 use trueray::precision::Tier;
 use trueray::scene::{Scene, Window, parse};
 use trueray::settings::Settings;
+use trueray::view::Projection;
 
 pub(crate) use folder::{Folder, assert_exit};
 
@@ -144,6 +145,20 @@ pub(crate) fn cpu_picture<T: Real>(scene: &Scene, settings: &Settings, effects: 
         (picture(scene, rgb), tally.not_finite)
     })
     .clone()
+}
+
+/// The settings with parallel rays.
+pub(crate) fn orthographic(settings: Settings) -> Settings {
+    Settings { view: settings.view.projected(Projection::Orthographic), ..settings }
+}
+
+/// The scene with a window for parallel rays: as large as what an eye sees at the depth of the first sphere.
+pub(crate) fn widened(mut scene: Scene) -> Scene {
+    let Window { near, left, right, bottom, top } = scene.window;
+    let depth = scene.spheres.first().map_or(near, |sphere| sphere.center.z.abs().max(sphere.scale.max_element()));
+    let [left, right, bottom, top] = [left, right, bottom, top].map(|edge| edge / near * depth);
+    scene.window = Window { near, left, right, bottom, top };
+    scene
 }
 
 /// A scene with its reference and the reference's picture.

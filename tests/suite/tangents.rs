@@ -6,6 +6,7 @@ use trueray::cpu::Reference;
 use trueray::effects::Effects;
 use trueray::engine::{Backend, Engine, Options, Pixels};
 use trueray::film::Picture;
+use trueray::pattern::Pattern;
 use trueray::precision::Tier;
 use trueray::scene::Scene;
 use trueray::settings::Settings;
@@ -194,7 +195,7 @@ fn what_follows_a_tangent_is_decided_too() {
     );
     (scene.width, scene.height) = (120, 120);
     for side in [1, 2] {
-        let settings = Settings { samples_per_side: side, ..Settings::classic() };
+        let settings = Settings { pattern: Pattern::Grid { side }, ..Settings::classic() };
         let effects = Effects::of(&scene.viewed(&settings));
         let (expected, _) = cpu_picture::<f64>(&scene, &settings, &effects);
         let (picture, _) = gpu_picture(&gpu, Tier::Double, &scene, &settings, &effects);

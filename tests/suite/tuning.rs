@@ -6,6 +6,7 @@ use trueray::accel::Density;
 use trueray::bench::Family;
 use trueray::effects::Effects;
 use trueray::gpu::{DeviceKind, Gpu, GpuRenderer};
+use trueray::pattern::Pattern;
 use trueray::precision::Tier;
 use trueray::scene::Scene;
 use trueray::settings::Settings;
@@ -52,7 +53,8 @@ pub(crate) fn cases() -> Vec<(String, Scene, Settings)> {
     let family = |name: &str, size| (format!("{name} {size}"), small(Family::named(name).unwrap().scene(size)));
     let file = scene_files(&["refraction"]).swap_remove(0);
     let glass = (file.display().to_string(), small(scene(&file)));
-    let (classic, samples) = (Settings::classic(), Settings { samples_per_side: 2, ..Settings::exact() });
+    let (classic, samples) =
+        (Settings::classic(), Settings { pattern: Pattern::Grid { side: 2 }, ..Settings::exact() });
     [
         (family("classic", 5), samples),
         (family("ellipsoids", 100), classic),

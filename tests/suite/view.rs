@@ -15,6 +15,7 @@ use serde_json::Value;
 use trueray::effects::{self, Effects};
 use trueray::engine::{Backend, Engine, render_picture};
 use trueray::gpu::{Choice, Gpu, USUAL_KERNELS};
+use trueray::pattern::Pattern;
 use trueray::precision::{self, Selection};
 use trueray::scene::{Scene, parse};
 use trueray::settings::Settings;
@@ -669,7 +670,8 @@ fn work_with(
 #[cfg(debug_assertions)]
 #[test]
 fn a_panic_is_told_and_what_is_asked_next_is_shown() {
-    let start = ViewState { settings: Settings { samples_per_side: 1 << 16, ..Settings::classic() }, ..start() };
+    let start =
+        ViewState { settings: Settings { pattern: Pattern::Grid { side: 1 << 16 }, ..Settings::classic() }, ..start() };
     let work = work_with(start, || Ok(None));
     let mut page = work.page();
     let words = page.until(|words| words["is"] == "failed");

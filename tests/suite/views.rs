@@ -16,7 +16,7 @@ use trueray::scene::Scene;
 use trueray::settings::Settings;
 use trueray::tuning::Tuning;
 use trueray::verify::Verify;
-use trueray::view::View;
+use trueray::view::{Projection, View};
 use trueray::views::{Frame, NoCenter, Placement, table, turntable};
 use trueray::{Fov, Renderer, Window};
 
@@ -28,7 +28,8 @@ const SCENE: &str = "SPHERE a 0 0 -6 2 2 2 0.9 0.2 0.1 0.3 0.7 0.3 0.4 20\nSPHER
                      AMBIENT 0.3 0.3 0.3\nBACK 0.1 0.1 0.2\n";
 const HEAD: &str = "NEAR 1\nLEFT -1\nRIGHT 1\nBOTTOM -1\nTOP 1\n";
 /// Where the file's camera is.
-const START: Placement = Placement { eye: DVec3::ZERO, look_at: None, up: DVec3::Y, fov: None };
+const START: Placement =
+    Placement { eye: DVec3::ZERO, look_at: None, up: DVec3::Y, fov: None, projection: Projection::Perspective };
 
 /// With the scene in `scene.txt`.
 fn folder() -> Folder {
@@ -246,7 +247,7 @@ fn a_turntable_goes_around_once() {
         assert!((behind - turned(back)).length() < 1e-12 && up == DVec3::Y && right.y == 0.0, "{placement:?}");
     }
     let (eye, look_at) = (DVec3::new(0.0, 2.0, 0.0), Some(DVec3::new(0.0, 0.0, -6.0)));
-    let start = Placement { eye, look_at, up: DVec3::Z, fov: None };
+    let start = Placement { eye, look_at, up: DVec3::Z, fov: None, projection: Projection::Perspective };
     let all = turntable(7, &scene, &start).unwrap();
     assert!(
         all.len() == 7

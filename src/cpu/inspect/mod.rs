@@ -30,7 +30,7 @@ pub struct Inspector {
     reference: Reference<f64>,
     units: Units,
     distinct: Distinct,
-    side: u32,
+    count: u32,
 }
 
 impl Inspector {
@@ -38,7 +38,7 @@ impl Inspector {
     pub fn new(viewed: &ViewedScene, effects: &Effects) -> Self {
         let reference = Reference::new(viewed, effects);
         let distinct = Distinct::of(&reference.world);
-        Self { units: Units::of(viewed), distinct, side: viewed.settings().samples_per_side, reference }
+        Self { units: Units::of(viewed), distinct, count: viewed.settings().pattern.count(), reference }
     }
 
     /// The reference.
@@ -79,7 +79,7 @@ impl Inspector {
             colors.push(color);
             samples.push(recorder.finish(color));
         }
-        let color = resolve(colors.into_iter(), self.side);
+        let color = resolve(colors.into_iter(), self.count);
         let mut least = Least::default();
         for (sample, record) in samples.iter().enumerate() {
             let all = record.rays.iter().flat_map(|ray| &ray.decisions);

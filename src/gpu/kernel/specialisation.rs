@@ -35,8 +35,11 @@ pub struct Specialisation {
     pub sphere_count: u32,
     /// How the bounces of paths are scheduled, where nothing refracts.
     pub schedule: Schedule,
-    /// Side of the grid of samples in a pixel.
+    /// Samples of a pixel, and how many columns of them it has.
     pub samples: u32,
+    pub side: u32,
+    /// Whether primary rays are parallel.
+    pub parallel: bool,
     /// Which pixels a dispatch renders.
     pub slots: Slots,
     /// Whether pixels say where rounding could decide what they show.
@@ -67,7 +70,9 @@ impl Specialisation {
             secondary: Secondary::Both,
             sphere_count: 0,
             schedule: Schedule::InPlace,
-            samples: settings.samples_per_side,
+            samples: settings.pattern.count(),
+            side: settings.pattern.side(),
+            parallel: settings.view.is_parallel(),
             slots: Slots::Tiles,
             certified: false,
             linear: false,
@@ -137,6 +142,8 @@ impl Specialisation {
             ("ELLIPSOIDS", on(Effect::Ellipsoids)),
             ("BLINN", f64::from(self.blinn)),
             ("SAMPLES", f64::from(self.samples)),
+            ("SIDE", f64::from(self.side)),
+            ("PARALLEL", f64::from(self.parallel)),
             ("COUNT_RAYS", f64::from(self.count_rays)),
             ("TANGENTS", f64::from(self.kernel.tells_tangents())),
             ("CERTIFIED", f64::from(self.certified)),

@@ -60,7 +60,7 @@ impl Work {
         };
         let (storage, copied) = (wgpu::BufferUsages::STORAGE, wgpu::BufferUsages::COPY_DST);
         let pixel_count = u64::from(capacity) * TILE_PIXELS as u64;
-        let slots = pixel_count * u64::from(specialisation.samples * specialisation.samples);
+        let slots = pixel_count * u64::from(specialisation.samples);
         let pixels = Readable::new(device, pixel_count);
         let ray_counts = Readable::new(device, if specialisation.count_rays { slots * RAY_COUNT_SIZE / 4 } else { 2 });
         let number = specialisation.color_size() / 4;

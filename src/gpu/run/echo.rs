@@ -12,7 +12,7 @@ use crate::misuse::{Misuse, check_picture};
 use crate::viewed::ViewedScene;
 
 /// Values before the spheres, of each sphere, of each light, and after the lights.
-const COUNTS: [usize; 4] = [40, 20, 6, 6];
+const COUNTS: [usize; 4] = [41, 20, 6, 6];
 
 /// Packs `viewed` and lets the device write back every field in the order of `shaders/echo.wgsl`: numbers as the bits of
 /// their nearest `f32`.

@@ -299,6 +299,8 @@ impl<'a> Prober<'a> {
             count_rays: false,
             workgroup: 64,
             samples: 1,
+            side: 1,
+            parallel: false,
             slots: Slots::Tiles,
             dispatch_tiles: 0,
         };

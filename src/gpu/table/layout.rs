@@ -57,6 +57,7 @@ pub struct ConeValues {
     pub light_allowance: f64,
     pub background_levels: f64,
     pub moved: f64,
+    pub position_error: f64,
 }
 
 /// Where the lists of spheres are.
@@ -186,6 +187,8 @@ macro_rules! layout {
                     background_levels: $real,
                     /// What rounding takes of all places when the eye is moved to the origin.
                     moved: $real,
+                    /// Error of the origin of a primary ray.
+                    position_error: $real,
                     /// To the size that WGSL gives the struct.
                     padding2: [u32; $params2],
                 }
@@ -323,6 +326,7 @@ macro_rules! layout {
                         light_allowance: Self::real(values.cones.light_allowance),
                         background_levels: Self::real(values.cones.background_levels),
                         moved: Self::real(values.cones.moved),
+                        position_error: Self::real(values.cones.position_error),
                         ..Params::zeroed()
                     }
                 }
@@ -390,21 +394,21 @@ macro_rules! layout {
 
 layout!(
     /// The structs of the `f32` kernels.
-    single, f32, params 0 0 0, shape 0, light 1, face 1
+    single, f32, params 0 0 3, shape 0, light 1, face 1
 );
 layout!(
     /// The structs of the `f64` kernels.
-    double, f64, params 1 2 0, shape 1, light 2, face 2
+    double, f64, params 1 2 6, shape 1, light 2, face 2
 );
 
 const _: () = {
-    assert!(size_of::<single::Params>() == 160 && std::mem::offset_of!(single::Params, window_low) == 96);
+    assert!(size_of::<single::Params>() == 176 && std::mem::offset_of!(single::Params, window_low) == 96);
     assert!(size_of::<single::Shape>() == 32 && std::mem::offset_of!(single::Shape, inv_scale) == 16);
     assert!(size_of::<single::Material>() == 48 && std::mem::offset_of!(single::Material, scale) == 32);
     assert!(size_of::<single::Light>() == 32 && std::mem::offset_of!(single::Light, intensity) == 16);
     assert!(size_of::<single::Face>() == 32 && size_of::<double::Face>() == 48);
     assert!(size_of::<single::Glass>() == 12 && size_of::<double::Glass>() == 24);
-    assert!(size_of::<double::Params>() == 256 && std::mem::offset_of!(double::Params, window_low) == 144);
+    assert!(size_of::<double::Params>() == 288 && std::mem::offset_of!(double::Params, window_low) == 144);
     assert!(size_of::<double::Shape>() == 64 && std::mem::offset_of!(double::Shape, inv_scale) == 32);
     assert!(size_of::<double::Material>() == 96 && std::mem::offset_of!(double::Material, scale) == 64);
     assert!(size_of::<double::Light>() == 64 && std::mem::offset_of!(double::Light, intensity) == 32);

@@ -74,10 +74,15 @@ fn pack<'a, L: Layout + 'a>(
         let index = indices.as_ref().as_ref().map_or(i as u32, |indices| indices[i]);
         shape_value(&ellipsoid(&scene.spheres[i], true_axes), index, true_axes)
     };
-    let [columns, rows] =
-        [scene.width, scene.height].map(|size| size.next_multiple_of(TILE) * settings.samples_per_side);
-    let places = columns + rows;
-    let place = move |i: u32| if i < columns { camera.column(i) } else { camera.row(i - columns) };
+    let [columns, rows] = [scene.width, scene.height].map(|size| size.next_multiple_of(TILE) * settings.pattern.side());
+    // Where rays are parallel their direction is the last.
+    let places = columns + rows + u32::from(camera.is_parallel());
+    let rays = camera.clone();
+    let place = move |i: u32| match i.checked_sub(columns) {
+        None => rays.column(i),
+        Some(row) if row < rows => rays.row(row),
+        Some(_) => rays.direction(),
+    };
     let window = move |i: usize| match (i as u32).checked_sub(places) {
         None => place(i as u32),
         Some(i) => residual::<L>(place(i)),
@@ -109,6 +114,7 @@ fn pack<'a, L: Layout + 'a>(
             light_allowance: accel.light_allowance,
             background_levels: levels(scene.background),
             moved: viewed.moved_by(),
+            position_error: camera.position_error(L::UNIT),
         },
     };
     let has_ambient = on(Effect::Ambient);

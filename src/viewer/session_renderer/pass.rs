@@ -7,6 +7,7 @@ use super::coarse::coarse_engine;
 use super::{Context, FRAME_MS, SLICE_MS, SessionRenderer};
 use crate::engine::{Backend, Engine, Options, Pixels, Times, ms};
 use crate::gpu;
+use crate::pattern::Pattern;
 use crate::settings::Settings;
 use crate::tiles::TILE;
 use crate::viewer::messages::SampledPart;
@@ -38,7 +39,7 @@ impl PassEngine<'_> {
 pub(super) struct Pass<'g> {
     pub(super) engine: PassEngine<'g>,
     step: u32,
-    samples_per_side: u32,
+    pattern: Pattern,
     pub(super) size: (u32, u32),
     /// The first one of a view, which is shown at once and not given up for a newer view.
     pub(super) first: bool,
@@ -52,7 +53,7 @@ pub(super) struct Pass<'g> {
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct FrameStats {
     pub(super) step: u32,
-    pub(super) samples_per_side: u32,
+    pub(super) samples: u32,
     /// Where not all pixels are sampled.
     pub(super) sampled: Option<SampledPart>,
     /// From the view to the picture, in ms.
@@ -65,9 +66,9 @@ impl SessionRenderer<'_> {
     /// Prepares the next picture.
     pub(super) fn next_pass(&mut self, context: &mut Context) -> Result<(), gpu::Error> {
         let Some(job) = &mut self.job else { return Ok(()) };
-        let Some((step, samples_per_side)) = job.passes.pop() else { return Ok(()) };
+        let Some((step, pattern)) = job.passes.pop() else { return Ok(()) };
         let start = Instant::now();
-        let settings = Settings { samples_per_side, ..job.settings };
+        let settings = Settings { pattern, ..job.settings };
         let backend = Backend::of(self.gpu, &job.selection);
         let (shown, how, whole) = (context.shown(), (&settings, &job.effects), job.framing());
         let (engine, size) = if let Some(map) = job.map.take() {
@@ -81,7 +82,7 @@ impl SessionRenderer<'_> {
         let first = job.took > 0.0;
         job.took = 0.0;
         self.not_finite = 0;
-        self.pass = Some(Pass { engine, step, samples_per_side, size, first, next_row: 0, rgb: Vec::new(), took });
+        self.pass = Some(Pass { engine, step, pattern, size, first, next_row: 0, rgb: Vec::new(), took });
         Ok(())
     }
 
@@ -121,7 +122,7 @@ impl SessionRenderer<'_> {
     pub(super) fn rows_at_once(&self, pass: &Pass) -> u32 {
         let (width, height) = pass.size;
         let whole = pass.first && self.costs.forecast(pass.size, 1) < 4.0 * FRAME_MS;
-        let row_ms = self.costs.sample_ms * f64::from(pass.samples_per_side.pow(2)) * f64::from(width);
+        let row_ms = self.costs.sample_ms * f64::from(pass.pattern.count()) * f64::from(width);
         let rows = if whole { height } else { (SLICE_MS / row_ms).min(1e9) as u32 };
         let rows = rows.min((MAX_SLICE_BYTES / (width as usize * 3)) as u32).next_multiple_of(TILE).max(TILE);
         rows.min(height - pass.next_row)
@@ -131,7 +132,7 @@ impl SessionRenderer<'_> {
     pub(super) fn finish(&mut self, pass: &Pass, context: &mut Context) {
         let times = pass.engine.times();
         let (width, height) = pass.size;
-        let samples = f64::from(width) * f64::from(height) * f64::from(pass.samples_per_side.pow(2));
+        let samples = f64::from(width) * f64::from(height) * f64::from(pass.pattern.count());
         let render = times.render_ms + times.read_back_ms;
         let frame_ms = ms(pass.took);
         let prepare = match pass.engine {
@@ -139,8 +140,8 @@ impl SessionRenderer<'_> {
             PassEngine::Sampled(..) => self.costs.prepare_ms,
         };
         self.costs.learn(prepare, render, samples);
-        let (&Pass { step, samples_per_side, .. }, not_finite) = (pass, self.not_finite);
-        self.shown = FrameStats { step, samples_per_side, sampled: None, frame_ms, times, not_finite };
+        let (&Pass { step, pattern, .. }, not_finite) = (pass, self.not_finite);
+        self.shown = FrameStats { step, samples: pattern.count(), sampled: None, frame_ms, times, not_finite };
         self.send_state(context);
     }
 }

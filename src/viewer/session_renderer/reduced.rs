@@ -9,6 +9,7 @@ use super::{Context, FRAME_MS, Plan, SessionRenderer};
 use crate::effects::Effects;
 use crate::engine::{Backend, Engine, Options, Pixels, ms};
 use crate::gpu;
+use crate::pattern::Pattern;
 use crate::scene::{Names, Scene};
 use crate::settings::Settings;
 use crate::viewer::canvas::Canvas;
@@ -39,7 +40,7 @@ impl<'g> SessionRenderer<'g> {
     pub(super) fn render_reduced(&mut self, context: &mut Context) -> Result<(), gpu::Error> {
         (self.pass, self.measurement, self.problem) = (None, None, None);
         let (version, view) = self.session.view();
-        let settings = Settings { samples_per_side: 1, ..view.settings() };
+        let settings = Settings { pattern: Pattern::ONE, ..view.settings() };
         let size = fitted(view.size(context.scene), context.pixels);
         let mut part = largest(context.scene, &settings, REDUCED_SPHERES);
         let Plan { effects, selection, problem } = Plan::of((&mut part, None), &settings, &view, self.gpu);

@@ -100,6 +100,6 @@ impl<'g> SessionRenderer<'g> {
     pub(super) fn note_sampled(&mut self, map: &PreviewMap, frame_ms: f64, times: Times) {
         let sampled = Some(SampledPart { pixels: map.samples.pixels().len(), density: map.density });
         let not_finite = self.not_finite;
-        self.shown = FrameStats { step: 1, samples_per_side: 1, sampled, frame_ms, times, not_finite };
+        self.shown = FrameStats { step: 1, samples: 1, sampled, frame_ms, times, not_finite };
     }
 }
