@@ -372,8 +372,9 @@ impl Witness<f64> for Cone<'_> {
         let direction = if is_total {
             self.path.direction + 2.0 * (self.normal + LENGTH * u)
         } else {
-            // √k, and where it vanishes what its error leaves of it: the derivatives of the bend r·c − √k by c and by r.
-            let root = square.max(square_error).sqrt().max(f64::MIN_POSITIVE);
+            // The bend r·c − √k changes by c and by r as its derivatives say, with √k halfway to the least that its error leaves of it.
+            let [root, least, error] = [square, square - square_error, square_error].map(|k| k.max(0.0).sqrt());
+            let root = (0.5 * (root + least)).max(0.5 * error).max(f64::MIN_POSITIVE);
             ratio * self.path.direction
                 + bend.abs() * self.normal
                 + ratio * (bend.abs() / root) * cosine_error

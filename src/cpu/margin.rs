@@ -173,7 +173,7 @@ impl Margins<'_> {
         let slide = self.slide(shape, local) / length(self.ray.direction);
         // The start is rounded in object space.
         let start = LOCAL * self.roundoff.shading * shape.radius / at.a.sqrt();
-        let error = slide + start + self.root_error(sphere, &at, t, local);
+        let error = slide + start + self.root_error(sphere, &at, t, local).max(self.turn(shape, at.a));
         Crossing { t: [0.0, t], error: [0.0, error], is_sure: true }
     }
 
@@ -186,6 +186,13 @@ impl Margins<'_> {
             gradient.dot(self.ray.direction).abs() / length(gradient)
         };
         self.path.position * (slant(own.local) / slant(local)).max(1.0)
+    }
+
+    /// How far along the ray, in units of t, the end of a chord moves that begins on the surface, where the ray turns: t is −2S'·d'/A with
+    /// |S'| = r. Short chords move farther by that than by the width of the cone where they end.
+    fn turn(&self, shape: &Shape<f64>, a: f64) -> f64 {
+        let direction = largest(shape.inv_scale) * length(self.ray.direction) * self.path.direction;
+        2.0 * shape.radius * direction / a
     }
 
     /// Error of a root t at `local`, in object space.
@@ -215,10 +222,12 @@ impl Margins<'_> {
         let shape = &self.world.shapes[sphere];
         let Roundoff { shading, geometry } = self.roundoff;
         let at = approach(self.ray, shape);
-        let slide = if self.leaves(sphere) { self.slide(shape, local) } else { 0.0 };
+        let (slide, turn) =
+            if self.leaves(sphere) { (self.slide(shape, local), self.turn(shape, at.a)) } else { (0.0, 0.0) };
         let size = size(self.world, sphere);
         // Wherever it is, it lies on the surface.
-        let along = (slide + self.reach(sphere, &at, t, local) * length(self.ray.direction)).min(2.0 * size);
+        let reach = self.reach(sphere, &at, t, local).max(turn);
+        let along = (slide + reach * length(self.ray.direction)).min(2.0 * size);
         let place = length(shape.center + local * self.world.materials[sphere].scale) + length(shape.center);
         let normal = normal_error(shape, local, along, self.width(sphere, t), LOCAL * shading * shape.radius);
         PointError { position: along + geometry * (LOCAL * size + PLACE * place), normal: normal + ANGLE * shading }

@@ -190,6 +190,29 @@ impl<'a> GpuRenderer<'a> {
     }
 }
 
+/// Refuses numbers that the kernel cannot hold.
+fn check_range(viewed: &ViewedScene, effects: &Effects, kernel: Kernel) -> Result<(), Error> {
+    let scalar = if kernel.is_double() { Scalar::Double } else { Scalar::Single };
+    let (width, height) = (viewed.scene().width, viewed.scene().height);
+    let padded: u64 = [width, height].map(|size| u64::from(size.next_multiple_of(TILE))).iter().sum();
+    let why = limits::problem_in(scalar, viewed, effects).or_else(|| {
+        (padded * u64::from(viewed.settings().pattern.side()) > u64::from(u32::MAX))
+            .then(|| "the picture has more columns and rows of samples than a kernel counts".to_owned())
+    });
+    why.map_or(Ok(()), |why| Err(Error::OutOfRange { kernel: kernel.name(), why }))
+}
+
+/// About as many intersection tests as a tile takes, before any is measured.
+fn tests_of_tile(viewed: &ViewedScene, effects: &Effects) -> u64 {
+    let scene = viewed.scene();
+    let tests_per_pixel = u64::from(viewed.settings().pattern.count())
+        * (scene.spheres.len().min(64) as u64 + 1)
+        * (1 + scene.lights.len() as u64 * u64::from(effects.set.has(Effect::Shadows)))
+        * (1 + u64::from(effects.depth));
+    // A tree of rays doubles with each bounce where rays can wait.
+    tests_per_pixel.saturating_mul(1 << effects.waiting(scene).min(32)).saturating_mul(TILE_PIXELS as u64)
+}
+
 /// The kernel of `tier`, and how it rounds; certified pictures ask more of the device.
 fn kernel_of(gpu: &Gpu, tier: Tier, options: &Options) -> Result<(Kernel, Rounding), Error> {
     let kernel = gpu.kernel(tier)?;
@@ -234,16 +257,8 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         keep: impl FnOnce(Acceleration) -> K,
     ) -> Result<(Self, K), Error> {
         check_picture(viewed)?;
+        check_range(viewed, effects, kernel)?;
         let (scene, settings) = (viewed.scene(), viewed.settings());
-        let scalar = if kernel.is_double() { Scalar::Double } else { Scalar::Single };
-        if let Some(why) = limits::problem_in(scalar, viewed, effects) {
-            return Err(Error::OutOfRange { kernel: kernel.name(), why });
-        }
-        let padded = [scene.width, scene.height].map(|size| u64::from(size.next_multiple_of(TILE)));
-        if padded.iter().sum::<u64>() * u64::from(settings.pattern.side()) > u64::from(u32::MAX) {
-            let why = "the picture has more columns and rows of samples than a kernel counts".to_owned();
-            return Err(Error::OutOfRange { kernel: kernel.name(), why });
-        }
         let (tuning, tables) = (&gpu.tuned().tuning, gpu.tables());
         let specialisation = Specialisation {
             slots: O::SLOTS,
@@ -306,14 +321,8 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         add_scene(&mut set, &gpu.device, &packed, &specialisation, basis)?;
         drop(uploading);
         let samples = u64::from(settings.pattern.count());
-        let tests_per_pixel = samples
-            * (scene.spheres.len().min(64) as u64 + 1)
-            * (1 + scene.lights.len() as u64 * u64::from(effects.set.has(Effect::Shadows)))
-            * (1 + u64::from(effects.depth));
-        // A tree of rays doubles with each bounce where rays can wait.
-        let tests_per_pixel = tests_per_pixel.saturating_mul(1 << effects.waiting(scene).min(32));
         let tiles = match options.pixel_ms {
-            None => tuning.first_dispatch_tests as u64 / tests_per_pixel.saturating_mul(TILE_PIXELS as u64),
+            None => tuning.first_dispatch_tests as u64 / tests_of_tile(viewed, effects),
             Some(ms) => (tuning.dispatch_ms / (ms * TILE_PIXELS as f64).max(1e-9)) as u64,
         };
         let color = if kernel.is_double() { scene.background } else { scene.background.as_vec3().as_dvec3() };

@@ -95,7 +95,7 @@ fn push_sample(text: &mut String, sample: &SampleRecord, labels: Labels) {
 
 fn push_ray(text: &mut String, index: usize, ray: &RayRecord, labels: Labels) {
     let kind = match ray.kind {
-        RayKind::Primary => "from the eye",
+        RayKind::Primary => "primary",
         RayKind::Reflection => "reflected",
         RayKind::Refraction => "refracted",
         RayKind::TotalReflection => "refracted, reflected in total",

@@ -309,7 +309,7 @@ fn the_table_tells_rays_tests_light_and_colour() {
     let table = text(&pixel(&scene, "scene.txt 4 4 --device cpu", true));
     let table = table.split_whitespace().collect::<Vec<_>>().join(" ");
     for part in [
-        "ray 0 from the eye, weight 1",
+        "ray 0 primary, weight 1",
         "ray 1 reflected where ray 0 ends, weight 0.5",
         "sphere 'mirror' (0)",
         "taken: the least root that counts",

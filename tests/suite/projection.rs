@@ -241,6 +241,28 @@ fn every_tier_is_explained_and_certified_pictures_are_the_reference() {
     }
 }
 
+/// Balls of round numbers, where rays meet the critical angle itself: a ray that enters there has a chord of about no length, and rounding
+/// of its direction decides whether that is longer than the epsilon.
+#[test]
+fn chords_of_about_no_length_are_explained() {
+    let Some(gpu) = gpu("projection::chords_of_about_no_length_are_explained") else { return };
+    let mut differing = 0;
+    for (center, eta) in [("-1 1 -4", 0.25), ("0 0 -4", 0.25), ("1 0 -3", 0.25), ("0 0 -4", 0.5), ("0 1 -5", 0.75)] {
+        let text = format!(
+            "SPHERE g {center} 1 1 1 0.5 0.9 0.7 0.02 0 0.3 0.1 20 0.9 {eta}\nBACK 0.3 0.4 0.5\nAMBIENT 0.4 0.4 0.4"
+        );
+        let scene = seen(&text, 2.0, (64, 64));
+        let settings = orthographic(Settings::classic());
+        let case = Case::new(&scene, &settings);
+        for tier in Tier::ALL {
+            let (shown, _) = gpu_picture(&gpu, tier, &scene, &settings, &case.effects);
+            case.assert_explained(&format!("{center}, {eta} at {tier}"), &shown, Judge::of(tier));
+            differing += shown.pixels().iter().zip(case.expected.pixels()).filter(|(a, b)| a != b).count();
+        }
+    }
+    assert!(differing > 20, "the angle is met: {differing}");
+}
+
 /// `fast` leaves few pixels to the reference.
 #[test]
 fn a_kernel_is_sure_of_most_pixels() {
