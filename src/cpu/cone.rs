@@ -51,6 +51,8 @@ pub(super) struct Cone<'a> {
     pub others: Vec<u32>,
     /// The first decision that was taken otherwise.
     pub flipped: Option<Decision>,
+    /// The first that could be, and was not.
+    pub open: Option<Decision>,
 }
 
 impl<'a> Cone<'a> {
@@ -73,6 +75,7 @@ impl<'a> Cone<'a> {
             unsure: 0,
             others: Vec::new(),
             flipped: None,
+            open: None,
         }
     }
 
@@ -95,6 +98,7 @@ impl<'a> Cone<'a> {
         self.unsure += 1;
         let Some(choice) = choice else {
             self.others.push(others as u32);
+            self.open.get_or_insert(decision(0));
             return 0;
         };
         if choice > 0 {

@@ -173,7 +173,7 @@ impl Margins<'_> {
         let slide = self.slide(shape, local) / length(self.ray.direction);
         // The start is rounded in object space.
         let start = LOCAL * self.roundoff.shading * shape.radius / at.a.sqrt();
-        let error = slide + start + self.root_error(sphere, &at, t, local).max(self.turn(shape, at.a));
+        let error = slide + start + self.turned(own, shape, [at.a, t], self.root_error(sphere, &at, t, local));
         Crossing { t: [0.0, t], error: [0.0, error], is_sure: true }
     }
 
@@ -188,11 +188,11 @@ impl Margins<'_> {
         self.path.position * (slant(own.local) / slant(local)).max(1.0)
     }
 
-    /// How far along the ray, in units of t, the end of a chord moves that begins on the surface, where the ray turns: t is −2S'·d'/A with
-    /// |S'| = r. Short chords move farther by that than by the width of the cone where they end.
-    fn turn(&self, shape: &Shape<f64>, a: f64) -> f64 {
-        let direction = largest(shape.inv_scale) * length(self.ray.direction) * self.path.direction;
-        2.0 * shape.radius * direction / a
+    /// `error` of the end t of a chord that begins on the surface, or what a turn of its ray makes of it where the chord is shorter than
+    /// that: the width of the cone at its end says nothing of it. t is −2S'·d'/A, and S'·d' changes by the gradient times the turn.
+    fn turned(&self, own: &Own<f64>, shape: &Shape<f64>, [a, t]: [f64; 2], error: f64) -> f64 {
+        let turn = 2.0 * length(own.local * shape.inv_scale) * length(self.ray.direction) * self.path.direction / a;
+        if t.abs() < 2.0 * turn { error.max(turn) } else { error }
     }
 
     /// Error of a root t at `local`, in object space.
@@ -222,11 +222,13 @@ impl Margins<'_> {
         let shape = &self.world.shapes[sphere];
         let Roundoff { shading, geometry } = self.roundoff;
         let at = approach(self.ray, shape);
-        let (slide, turn) =
-            if self.leaves(sphere) { (self.slide(shape, local), self.turn(shape, at.a)) } else { (0.0, 0.0) };
+        let reach = self.reach(sphere, &at, t, local);
+        let (slide, reach) = match self.path.own.as_ref().filter(|_| self.leaves(sphere)) {
+            Some(own) => (self.slide(shape, local), self.turned(own, shape, [at.a, t], reach)),
+            None => (0.0, reach),
+        };
         let size = size(self.world, sphere);
         // Wherever it is, it lies on the surface.
-        let reach = self.reach(sphere, &at, t, local).max(turn);
         let along = (slide + reach * length(self.ray.direction)).min(2.0 * size);
         let place = length(shape.center + local * self.world.materials[sphere].scale) + length(shape.center);
         let normal = normal_error(shape, local, along, self.width(sphere, t), LOCAL * shading * shape.radius);

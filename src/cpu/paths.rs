@@ -18,13 +18,8 @@ pub(super) struct Outcome {
     pub shade: Shade,
     /// The first decision that was taken otherwise.
     pub flipped: Option<Decision>,
-}
-
-impl Outcome {
-    /// What explains a value that it gives.
-    pub(super) fn decision(&self) -> Decision {
-        self.flipped.unwrap_or(Decision::QuantisationStep)
-    }
+    /// The first that could have been.
+    pub open: Option<Decision>,
 }
 
 /// The paths that a sample may take, those with the fewest decisions taken otherwise first.
@@ -58,8 +53,8 @@ impl Iterator for Paths<'_> {
         self.traced += 1;
         let mut cone = Cone::new(self.trial, &script);
         let color = trace(&self.trial.reference.world, self.primary, &mut cone).to_f64();
-        let (others, flipped) = (std::mem::take(&mut cone.others), cone.flipped);
-        let outcome = Outcome { shade: cone.into_spread().around(color), flipped };
+        let (others, flipped, open) = (std::mem::take(&mut cone.others), cone.flipped, cone.open);
+        let outcome = Outcome { shade: cone.into_spread().around(color), flipped, open };
         for (place, &count) in others.iter().enumerate() {
             // More than are ever traced need not wait.
             let room = (MAX_PATHS + 1).saturating_sub(self.traced + self.scripts.len()) as u32;

@@ -76,7 +76,7 @@ impl<'a, H: Fn(&Shade) -> bool> Sums<'a, H> {
         let Some(outcomes) = self.samples.get(index).cloned() else {
             return Some(flipped.unwrap_or(Decision::QuantisationStep));
         };
-        for Outcome { shade, flipped: own } in &outcomes {
+        for Outcome { shade, flipped: own, .. } in &outcomes {
             self.tried += usize::from(outcomes.len() > 1);
             let found = self.explained(index + 1, [low + shade.low, high + shade.high], flipped.or(*own));
             if found.is_some() {
