@@ -22,7 +22,7 @@ pub(crate) struct Bounds {
 
 /// What a camera makes of spheres.
 #[derive(Debug)]
-pub(crate) struct Projection {
+pub(crate) struct Projector {
     axes: [DVec3; 3],
     near: f64,
     is_parallel: bool,
@@ -31,7 +31,7 @@ pub(crate) struct Projection {
     area: Area,
 }
 
-impl Projection {
+impl Projector {
     pub(crate) fn new(camera: &Camera) -> Self {
         let (across, down) = (Pixels::across(camera), Pixels::down(camera));
         let (axes, near, is_parallel) = (camera.axes(), camera.near(), camera.is_parallel());
@@ -92,13 +92,13 @@ impl Bounds {
     }
 
     /// The columns in which the rows from `first` up to `end` can see it.
-    pub(crate) fn columns_in(&self, [first, end]: [u32; 2], projection: &Projection) -> [u32; 2] {
+    pub(crate) fn columns_in(&self, [first, end]: [u32; 2], projector: &Projector) -> [u32; 2] {
         let Some(outline) = &self.outline else {
             return self.columns;
         };
-        let rows = &projection.down;
+        let rows = &projector.down;
         let slopes = outline.across(rows.samples([first, end - 1]).map(|row| rows.slope(row)));
-        match slopes.and_then(|slopes| projection.across.between(slopes)) {
+        match slopes.and_then(|slopes| projector.across.between(slopes)) {
             // Never beyond the rectangle, which rounding could make it, and never empty, which only rounding leaves it.
             Some([left, right]) if left <= self.columns[1] && right >= self.columns[0] => {
                 [left.max(self.columns[0]), right.min(self.columns[1])]

@@ -7,7 +7,7 @@ use super::lists::{Binning, Lists};
 use crate::area::Area;
 use crate::camera::Camera;
 use crate::census::CHUNK;
-use crate::tiles::{Bounds, Projection, TILE};
+use crate::tiles::{Bounds, Projector, TILE};
 
 /// Entries that all lists together may have, beside some per sphere: more make the tiles larger.
 const MAX_ENTRIES: u64 = 1 << 22;
@@ -36,7 +36,7 @@ pub struct ScreenLists {
 struct Tiles<'a> {
     /// Where each sphere can be on the picture.
     bounds: &'a [Option<Bounds>],
-    projection: &'a Projection,
+    projector: &'a Projector,
     shift: u32,
     across: u32,
     down: u32,
@@ -47,17 +47,17 @@ impl ScreenLists {
     /// that helps.
     pub(super) fn new(enclosure: &Enclosure, camera: &Camera, longest: f64) -> Self {
         let limit = MAX_ENTRIES.max(8 * enclosure.len() as u64);
-        let projection = Projection::new(camera);
+        let projector = Projector::new(camera);
         let bounds = |sphere: usize| {
             let Solid { center, semi_axes } = enclosure.solid(sphere);
-            projection.bounds(center, semi_axes)
+            projector.bounds(center, semi_axes)
         };
         let bounds: Vec<_> = (0..enclosure.len()).into_par_iter().map(bounds).collect();
-        let (width, height) = projection.size();
+        let (width, height) = projector.size();
         let tiles = |shift: u32| {
             // Whole tiles of the device, which renders what lies beyond the picture, too.
             let [across, down] = [width, height].map(|size| size.next_multiple_of(TILE).div_ceil(1 << shift));
-            Tiles { bounds: &bounds, projection: &projection, shift, across, down }
+            Tiles { bounds: &bounds, projector: &projector, shift, across, down }
         };
         let first_counts = tiles(FIRST_SHIFT).rectangles(SHIFTS);
         let count = |tiles: &Tiles| match SHIFTS.iter().position(|&shift| shift == tiles.shift) {
@@ -156,7 +156,7 @@ impl Cover {
 impl Tiles<'_> {
     /// How many tiles the rectangles around the spheres have, for tiles of each of these sizes.
     fn rectangles<const N: usize>(&self, shifts: [u32; N]) -> [u64; N] {
-        let area = self.projection.area();
+        let area = self.projector.area();
         let add = |sums: [u64; N], bounds: &Bounds| {
             let (columns, rows) =
                 (common(bounds.columns, area.left, area.right()), common(bounds.rows, area.top, area.bottom()));
@@ -181,7 +181,7 @@ impl Binning for Tiles<'_> {
 
     fn visit(&self, rank: usize, emit: &mut impl FnMut(usize, usize)) {
         let Some(bounds) = &self.bounds[rank] else { return };
-        let area = self.projection.area();
+        let area = self.projector.area();
         let Some(rows) = common(bounds.rows, area.top, area.bottom()) else { return };
         let [first, last] = rows.map(|row| row >> self.shift);
         let tiles =
@@ -191,7 +191,7 @@ impl Binning for Tiles<'_> {
             let ends = if bounds.is_rectangle() {
                 whole
             } else {
-                tiles(bounds.columns_in([row << self.shift, (row + 1) << self.shift], self.projection))
+                tiles(bounds.columns_in([row << self.shift, (row + 1) << self.shift], self.projector))
             };
             let Some([left, right]) = ends else { continue };
             let start = row as usize * self.across as usize;

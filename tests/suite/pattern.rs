@@ -1,7 +1,5 @@
 //! Samples that are no regular grid: their places, how evenly they lie, and that every way of rendering has the same.
 
-use std::process::{Command, Output};
-
 use trueray::area::Area;
 use trueray::cpu::{Judge, Reference};
 use trueray::effects::Effects;
@@ -11,7 +9,7 @@ use trueray::precision::Tier;
 use trueray::scene::Scene;
 use trueray::settings::{SampleOffset, Settings};
 
-use crate::support::{Case, gpu, gpu_picture, scene_of};
+use crate::support::{Case, Folder, gpu, gpu_picture, scene_of};
 
 const FILTERS: [Filter; 3] = [Filter::Box, Filter::Tent, Filter::Gaussian];
 
@@ -233,33 +231,9 @@ fn many_samples_fit_the_buffers_of_a_device() {
 
 // --- the program -----------------------------------------------------------------------------------------------------------
 
-struct Folder(tempfile::TempDir);
-
-impl Folder {
-    fn new() -> Self {
-        let folder = Self(tempfile::tempdir().unwrap());
-        std::fs::write(folder.0.path().join("scene.txt"), small().to_string()).unwrap();
-        folder
-    }
-
-    #[track_caller]
-    fn run(&self, arguments: &str, code: i32, message: &str) {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_trueray"));
-        let Output { status, stdout, stderr } =
-            command.args(arguments.split_whitespace()).current_dir(self.0.path()).output().unwrap();
-        let said = format!("{}{}", String::from_utf8_lossy(&stdout), String::from_utf8_lossy(&stderr));
-        assert_eq!(status.code(), Some(code), "{arguments}: {said}");
-        assert!(said.contains(message), "{arguments}: expected '{message}' in:\n{said}");
-    }
-
-    fn file(&self, name: &str) -> Vec<u8> {
-        std::fs::read(self.0.path().join(name)).unwrap()
-    }
-}
-
 #[test]
 fn what_makes_no_sense_is_refused() {
-    let folder = Folder::new();
+    let folder = Folder::with_scene(&small().to_string());
     for (arguments, message) in [
         ("render scene.txt --spp 7", "--spp 7: expected a square number from 1 to 256"),
         ("render scene.txt --spp 7", "help: --pattern fibonacci takes any number"),
@@ -270,41 +244,41 @@ fn what_makes_no_sense_is_refused() {
         ("render scene.txt --pattern fibonacci --filter mitchell", "possible values: box, tent, gaussian"),
         ("export scene.txt --to povray --pattern fibonacci --spp 5", "one sample a pixel"),
     ] {
-        folder.run(arguments, 2, message);
+        folder.says(arguments, 2, message);
     }
 }
 
 /// What a file says of itself, a certificate, `verify` and `compare --scene` tell patterns and filters apart.
 #[test]
 fn files_and_certificates_say_how_samples_lie() {
-    let folder = Folder::new();
+    let folder = Folder::with_scene(&small().to_string());
     let (tent, gaussian) =
         ("--pattern fibonacci --spp 6 --filter tent", "--pattern fibonacci --spp 6 --filter gaussian");
-    folder.run(&format!("render -q --device cpu {tent} --certificate c.json scene.txt -o whole.png"), 0, "");
-    folder.run(
+    folder.says(&format!("render -q --device cpu {tent} --certificate c.json scene.txt -o whole.png"), 0, "");
+    folder.says(
         &format!("verify --device cpu whole.png --scene scene.txt --certificate c.json {tent}"),
         0,
         "of this scene",
     );
-    folder.run(
+    folder.says(
         &format!("verify --device cpu whole.png --scene scene.txt --certificate c.json {gaussian}"),
         1,
         "settings.filter is \"tent\" there and \"gaussian\" here",
     );
-    folder.run(
+    folder.says(
         "verify --device cpu whole.png --scene scene.txt --certificate c.json --spp 4",
         1,
         "settings.samples_per_side",
     );
-    folder.run(&format!("compare --device cpu --scene scene.txt whole.png {tent}"), 0, "");
-    folder.run(&format!("compare --device cpu --scene scene.txt whole.png {gaussian}"), 1, "unexplained");
+    folder.says(&format!("compare --device cpu --scene scene.txt whole.png {tent}"), 0, "");
+    folder.says(&format!("compare --device cpu --scene scene.txt whole.png {gaussian}"), 1, "unexplained");
     for (part, options) in [(0, tent), (1, tent), (2, gaussian)] {
         let tile = part.min(1);
-        folder.run(&format!("render -q --device cpu {options} --tile {tile}/2 scene.txt -o {part}.png"), 0, "");
+        folder.says(&format!("render -q --device cpu {options} --tile {tile}/2 scene.txt -o {part}.png"), 0, "");
     }
-    folder.run("merge 0.png 1.png -o merged.png", 0, "");
-    folder.run(&format!("render -q --device cpu {tent} scene.txt -o whole.ppm"), 0, "");
-    folder.run("compare merged.png whole.ppm", 0, "");
-    folder.run("merge 0.png 2.png -o mixed.png", 2, "filter");
-    assert!(!folder.file("merged.png").is_empty());
+    folder.says("merge 0.png 1.png -o merged.png", 0, "");
+    folder.says(&format!("render -q --device cpu {tent} scene.txt -o whole.ppm"), 0, "");
+    folder.says("compare merged.png whole.ppm", 0, "");
+    folder.says("merge 0.png 2.png -o mixed.png", 2, "filter");
+    assert!(!folder.read("merged.png").is_empty());
 }

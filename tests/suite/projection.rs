@@ -1,7 +1,5 @@
 //! Orthographic pictures: what a pixel shows by hand, the same on every device and at every tier, and what goes with them and what not.
 
-use std::process::{Command, Output};
-
 use glam::DVec3;
 use trueray::accel::Rounding;
 use trueray::area::Area;
@@ -14,7 +12,7 @@ use trueray::scene::{Scene, Window};
 use trueray::settings::Settings;
 use trueray::view::{Projection, View};
 
-use crate::support::{Case, gpu, gpu_picture, orthographic, scene, scene_files, scene_of, widened};
+use crate::support::{Case, Folder, gpu, gpu_picture, orthographic, scene, scene_files, scene_of, widened};
 
 /// A scene with a window of this half width around the view.
 fn seen(text: &str, half: f64, (width, height): (u32, u32)) -> Scene {
@@ -298,33 +296,18 @@ fn the_precision_is_chosen_for_what_is_seen() {
 
 // --- the program -----------------------------------------------------------------------------------------------------------
 
-struct Folder(tempfile::TempDir);
-
-impl Folder {
-    fn new() -> Self {
-        let folder = Self(tempfile::tempdir().unwrap());
-        let text = "SPHERE a 0 0 -6 2 2 2 0.9 0.2 0.1 0.3 0.7 0.3 0.4 20\nSPHERE b 2 1 -5 0.5 1 0.5 0.1 0.8 0.3 0.3 0.6 0.2 0 10\n\
-                    LIGHT l 5 6 0 0.9 0.9 0.8\nAMBIENT 0.3 0.3 0.3\nBACK 0.1 0.1 0.2\n";
-        std::fs::write(folder.0.path().join("scene.txt"), seen(text, 3.0, (48, 36)).to_string()).unwrap();
-        folder
-    }
-
-    #[track_caller]
-    fn run(&self, arguments: &str, code: i32, message: &str) {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_trueray"));
-        let Output { status, stdout, stderr } =
-            command.args(arguments.split_whitespace()).current_dir(self.0.path()).output().unwrap();
-        let said = format!("{}{}", String::from_utf8_lossy(&stdout), String::from_utf8_lossy(&stderr));
-        assert_eq!(status.code(), Some(code), "{arguments}: {said}");
-        assert!(said.contains(message), "{arguments}: expected '{message}' in:\n{said}");
-    }
+/// A folder with two spheres, one of them an ellipsoid.
+fn folder() -> Folder {
+    let text = "SPHERE a 0 0 -6 2 2 2 0.9 0.2 0.1 0.3 0.7 0.3 0.4 20\nSPHERE b 2 1 -5 0.5 1 0.5 0.1 0.8 0.3 0.3 0.6 0.2 0 10\n\
+                LIGHT l 5 6 0 0.9 0.9 0.8\nAMBIENT 0.3 0.3 0.3\nBACK 0.1 0.1 0.2\n";
+    Folder::with_scene(&seen(text, 3.0, (48, 36)).to_string())
 }
 
 #[test]
 fn what_does_not_go_with_it_is_refused() {
-    let folder = Folder::new();
-    std::fs::write(folder.0.path().join("views.csv"), "eye_z,fov\n1,30\n").unwrap();
-    std::fs::write(folder.0.path().join("atoms.xyz"), "1\n\nO 0 0 0\n").unwrap();
+    let folder = folder();
+    std::fs::write(folder.path("views.csv"), "eye_z,fov\n1,30\n").unwrap();
+    std::fs::write(folder.path("atoms.xyz"), "1\n\nO 0 0 0\n").unwrap();
     for (arguments, code, message) in [
         ("render --fov 40 scene.txt", 2, "an orthographic picture has no field of view"),
         ("render --views views.csv scene.txt -o f.png", 3, "an orthographic picture has no field of view"),
@@ -332,40 +315,40 @@ fn what_does_not_go_with_it_is_refused() {
         ("view scene.txt", 2, "the live view is perspective only"),
         ("export scene.txt --to povray", 2, "--projection"),
     ] {
-        folder.run(&format!("{arguments} --projection orthographic"), code, message);
+        folder.says(&format!("{arguments} --projection orthographic"), code, message);
     }
-    folder.run("render --projection isometric scene.txt", 2, "possible values: perspective, orthographic");
+    folder.says("render --projection isometric scene.txt", 2, "possible values: perspective, orthographic");
 }
 
 #[test]
 fn the_program_knows_it_everywhere() {
-    let folder = Folder::new();
+    let folder = folder();
     let option = "--projection orthographic";
-    folder.run(&format!("render -q --device cpu {option} --certificate c.json scene.txt -o a.png"), 0, "");
-    folder.run(
+    folder.says(&format!("render -q --device cpu {option} --certificate c.json scene.txt -o a.png"), 0, "");
+    folder.says(
         &format!("verify --device cpu a.png --scene scene.txt --certificate c.json {option}"),
         0,
         "of this scene",
     );
-    folder.run("verify --device cpu a.png --scene scene.txt", 1, "");
-    folder.run(&format!("compare --device cpu --scene scene.txt a.png {option} --explain"), 0, "");
-    folder.run("compare --device cpu --scene scene.txt a.png", 1, "unexplained");
-    folder.run(&format!("pixel --device cpu scene.txt 24 18 {option}"), 0, "");
-    folder.run(&format!("check scene.txt {option}"), 0, "");
+    folder.says("verify --device cpu a.png --scene scene.txt", 1, "");
+    folder.says(&format!("compare --device cpu --scene scene.txt a.png {option} --explain"), 0, "");
+    folder.says("compare --device cpu --scene scene.txt a.png", 1, "unexplained");
+    folder.says(&format!("pixel --device cpu scene.txt 24 18 {option}"), 0, "");
+    folder.says(&format!("check scene.txt {option}"), 0, "");
     for tile in 0..2 {
-        folder.run(&format!("render -q --device cpu {option} --tile {tile}/2 scene.txt -o {tile}.png"), 0, "");
+        folder.says(&format!("render -q --device cpu {option} --tile {tile}/2 scene.txt -o {tile}.png"), 0, "");
     }
-    folder.run("merge 0.png 1.png -o merged.png", 0, "");
-    folder.run("compare merged.png a.png", 0, "");
-    folder.run("render -q --device cpu --tile 1/2 scene.txt -o 2.png", 0, "");
-    folder.run("merge 0.png 2.png -o mixed.png", 2, "projection");
+    folder.says("merge 0.png 1.png -o merged.png", 0, "");
+    folder.says("compare merged.png a.png", 0, "");
+    folder.says("render -q --device cpu --tile 1/2 scene.txt -o 2.png", 0, "");
+    folder.says("merge 0.png 2.png -o mixed.png", 2, "projection");
     // In an eye's picture the ball would fill the window.
     std::fs::write(
-        folder.0.path().join("beside.txt"),
+        folder.path("beside.txt"),
         "NEAR 1\nLEFT -1\nRIGHT 1\nBOTTOM -1\nTOP 1\nRES 9 9\nSPHERE s 3 0 -9 1 1 1 1 1 1 1 0 0 0 1\nAMBIENT 1 1 1\n",
     )
     .unwrap();
-    folder.run(&format!("check beside.txt {option}"), 0, "every sphere lies beside the window");
+    folder.says(&format!("check beside.txt {option}"), 0, "every sphere lies beside the window");
     let output = "check beside.txt";
-    folder.run(output, 0, "");
+    folder.says(output, 0, "");
 }

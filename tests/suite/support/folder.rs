@@ -83,6 +83,15 @@ impl Folder {
         assert_exit(&output, code, message);
         output
     }
+
+    /// Likewise where the message may also be on standard output.
+    #[track_caller]
+    pub(crate) fn says(&self, arguments: &str, code: i32, message: &str) {
+        let output = self.run(arguments);
+        let said = format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+        assert_exit(&output, code, "");
+        assert!(said.contains(message), "{arguments}: expected '{message}' in:\n{said}");
+    }
 }
 
 /// Compares the exit code and what is said.
