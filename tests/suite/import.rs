@@ -393,7 +393,7 @@ fn malformed_tables_and_points_are_refused_where_they_are_wrong() {
         (&PLY.replace("4 5 6 0", "4 5 6"), 17, 16, "end of line", "6 fields in a row of 7"),
         (&format!("{PLY}7 8 9 0 0 0 1\n"), 18, 1, "7 8 9 0 0 0 1", "goes on behind its last element"),
         (&PLY.replace("end_header", &format!("{FACE}end_header")), 19, 18, "end of file", "ends after 0 of 1 `face`"),
-        (&PLY.replace("double radius", "double x"), 13, 1, "end_header", "a second column `x`"),
+        (&PLY.replace("double radius", "double x"), 14, 1, "end_header", "a second column `x`"),
         ("data_X\nloop_\n_atom_site_label\n_atom_site_fract_x\n", 4, 1, "_atom_site_fract_x", "fractional coordinates"),
         ("ply\nformat ascii 1.0\nend_header\n", 3, 11, "end of line", "no element `vertex`"),
     ]);
