@@ -16,7 +16,8 @@ trap clean_up EXIT
 
 program=${TRUERAY:-}
 if [ -z "$program" ]; then
-    cargo build --quiet --locked
+    # With the Python package beside it dependencies have the features that they have in tests, so that they are not compiled again.
+    cargo build --quiet --locked --package trueray --package trueray-python --bin trueray
     program=$PWD/target/debug/trueray
 fi
 scene=$PWD/scenes/show/showcase.txt

@@ -130,28 +130,41 @@ impl Subject {
         let own: Value = serde_json::to_string(self)
             .and_then(|text| serde_json::from_str(&text))
             .map_err(|error| error.to_string())?;
-        let mut found = None;
-        for (name, value) in own.as_object().into_iter().flatten() {
-            let Some(certified) = certificate.get(name) else {
-                return Err(format!("it does not say of which {name} it is"));
-            };
-            found = found.or_else(|| {
-                first_difference(name, certified, value)
-                    .map(|[name, there, here]| format!("{name} is {there} there and {here} here"))
-            });
+        let names = || own.as_object().into_iter().flat_map(|fields| fields.keys());
+        if let Some(name) = names().find(|name| certificate.get(name).is_none()) {
+            return Err(format!("it does not say of which {name} it is"));
         }
-        Ok(found)
+        let found = first_difference(&certificate, &own, names());
+        Ok(found.map(|[name, there, here]| format!("{name} is {there} there and {here} here")))
     }
 }
 
-/// The first field in which two values differ that `name` stands for, and both of its values. What the second has not is not compared.
-pub(crate) fn first_difference(name: &str, first: &Value, second: &Value) -> Option<[String; 3]> {
+/// What a picture is of, causes before what follows from them.
+const CAUSES: [&str; 7] = ["program", "commit", "scene", "settings", "effects", "depth", "precision"];
+
+/// The first of these fields, causes first, in which two objects differ, and both of its values.
+pub(crate) fn first_difference<'a>(
+    first: &Value,
+    second: &Value,
+    names: impl IntoIterator<Item = &'a String>,
+) -> Option<[String; 3]> {
+    let mut names: Vec<&String> = names.into_iter().collect();
+    names.sort_by_key(|name| CAUSES.iter().position(|cause| cause == name).unwrap_or(CAUSES.len()));
+    names.into_iter().find_map(|name| difference(name, &first[name], &second[name]))
+}
+
+/// The first field in which two values differ that `name` stands for, and both of its values. What one has not is `none`.
+fn difference(name: &str, first: &Value, second: &Value) -> Option<[String; 3]> {
     match (first, second) {
-        (Value::Object(first), Value::Object(second)) => second.iter().find_map(|(key, value)| {
-            first_difference(&format!("{name}.{key}"), first.get(key).unwrap_or(&Value::Null), value)
-        }),
+        (Value::Object(fields), Value::Object(others)) => others
+            .keys()
+            .chain(fields.keys())
+            .find_map(|key| difference(&format!("{name}.{key}"), &first[key], &second[key])),
         (first, second) if first == second => None,
-        (first, second) => Some([name.to_owned(), first.to_string(), second.to_string()]),
+        (first, second) => {
+            let shown = |value: &Value| if value.is_null() { "none".to_owned() } else { value.to_string() };
+            Some([name.to_owned(), shown(first), shown(second)])
+        }
     }
 }
 

@@ -4,9 +4,20 @@ mod filter;
 
 use std::sync::Arc;
 
+use clap::ValueEnum;
 use serde::Serialize;
 
 pub use filter::Filter;
+
+/// The kinds of [`Pattern`], by their names.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum Placing {
+    /// A regular grid over the pixel
+    #[default]
+    Grid,
+    /// A Fibonacci lattice of any number of samples: edges that are nearly level or upright have many more shades
+    Fibonacci,
+}
 
 /// How the samples of a pixel are placed: the same in each pixel, which is their mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -42,6 +53,14 @@ impl Pattern {
     pub const MAX_SIDE: u32 = 16;
     /// The greatest number of samples.
     pub const MAX_COUNT: u32 = Self::MAX_SIDE * Self::MAX_SIDE;
+
+    /// One sample of a pattern of this kind, which [`Pattern::with_count`] has more of; none where a grid is to have a filter.
+    pub fn one_of(placing: Placing, filter: Filter) -> Option<Self> {
+        match placing {
+            Placing::Grid => (filter == Filter::Box).then_some(Self::ONE),
+            Placing::Fibonacci => Some(Self::Fibonacci { count: 1, filter }),
+        }
+    }
 
     /// A grid of `count` samples.
     ///
@@ -88,6 +107,11 @@ impl Pattern {
             Self::Grid { side } => side * side,
             Self::Fibonacci { count, .. } => count,
         }
+    }
+
+    /// The pattern by the name that is the same for the same samples: a single one lies where a grid has it, whatever the filter.
+    pub(crate) fn plain(self) -> Self {
+        if self.count() == 1 { Self::ONE } else { self }
     }
 
     /// Columns of samples that a pixel has, and as many rows: those of the grid, or one for each sample.

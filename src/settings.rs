@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use clap::ValueEnum;
 use glam::DVec3;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use crate::pattern::Pattern;
 use crate::view::View;
@@ -145,8 +145,12 @@ pub struct Settings {
     /// Greatest number of reflection bounces, 0 to [`Settings::MAX_DEPTH`].
     pub max_depth: u32,
     /// The samples of each pixel, which is their mean.
-    #[serde(flatten)]
+    #[serde(flatten, serialize_with = "plain")]
     pub pattern: Pattern,
+}
+
+fn plain<S: Serializer>(pattern: &Pattern, serializer: S) -> Result<S::Ok, S::Error> {
+    pattern.plain().serialize(serializer)
 }
 
 impl Settings {

@@ -119,6 +119,11 @@ impl View {
         Self { projection, ..self }
     }
 
+    /// How the world is projected.
+    pub fn projection(&self) -> Projection {
+        self.projection
+    }
+
     /// Whether all rays from the eye are parallel.
     pub(crate) fn is_parallel(&self) -> bool {
         self.projection == Projection::Orthographic

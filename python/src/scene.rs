@@ -10,8 +10,9 @@ use trueray::{DVec3, Light, Sphere, Window};
 
 use crate::arrays::Table;
 use crate::errors::exception;
+use crate::settings::{name_of, named};
 
-/// Where the eye is and where it looks.
+/// Where the eye is, where it looks, and how the world is projected.
 #[pyclass(frozen, module = "trueray._native")]
 #[derive(Clone, Copy)]
 pub(crate) struct View(pub(crate) trueray::View);
@@ -19,9 +20,10 @@ pub(crate) struct View(pub(crate) trueray::View);
 #[pymethods]
 impl View {
     #[new]
-    fn new(eye: [f64; 3], look_at: Option<[f64; 3]>, up: [f64; 3]) -> PyResult<Self> {
+    fn new(eye: [f64; 3], look_at: Option<[f64; 3]>, up: [f64; 3], projection: &str) -> PyResult<Self> {
+        let projection = named("projection", projection)?;
         let view = trueray::View::new(eye.into(), look_at.map(DVec3::from), up.into());
-        view.map(Self).map_err(|error| PyValueError::new_err(error.to_string()))
+        view.map(|view| Self(view.projected(projection))).map_err(|error| PyValueError::new_err(error.to_string()))
     }
 
     /// The picture's axes in the world: to the right, upwards, and against the direction of view.
@@ -100,6 +102,11 @@ impl Scene {
         Self { scene: Arc::clone(&self.scene), view: view.0 }
     }
 
+    fn projected(&self, projection: &str) -> PyResult<Self> {
+        let view = self.view.projected(named("projection", projection)?);
+        Ok(Self { scene: Arc::clone(&self.scene), view })
+    }
+
     #[getter]
     fn size(&self) -> (u32, u32) {
         (self.scene.width, self.scene.height)
@@ -118,6 +125,11 @@ impl Scene {
     #[getter]
     fn eye(&self) -> [f64; 3] {
         self.view.eye.to_array()
+    }
+
+    #[getter]
+    fn projection(&self) -> String {
+        name_of(self.view.projection())
     }
 
     fn text(&self, py: Python<'_>) -> String {

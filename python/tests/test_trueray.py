@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
 import threading
 import time
 import warnings
@@ -13,6 +15,8 @@ import pytest
 
 import trueray
 
+#: The program, whose pictures are the same.
+PROGRAM = os.environ["TRUERAY"]
 SCENES = Path(__file__).parents[2] / "scenes"
 DEVICE = "0" if trueray.devices() else "cpu"
 THREE = np.array([[0.0, 0.0, 0.0], [2.0, 0.5, 0.0], [-1.0, 1.0, 1.0]])
@@ -39,6 +43,44 @@ def test_a_file_is_rendered_as_the_command_line_does() -> None:
     assert np.array_equal(trueray.render(again, device="cpu"), trueray.render(scene, device="cpu"))
 
 
+@pytest.mark.parametrize(
+    ("settings", "options"),
+    [
+        ({}, ""),
+        ({"samples": 4}, "--spp 4"),
+        ({"samples": 5, "pattern": "fibonacci"}, "--spp 5 --pattern fibonacci"),
+        ({"samples": 5, "pattern": "fibonacci", "filter": "tent"}, "--spp 5 --pattern fibonacci --filter tent"),
+        ({"samples": 4, "pattern": "fibonacci", "filter": "gaussian"}, "--spp 4 --pattern fibonacci --filter gaussian"),
+        ({"projection": "orthographic"}, "--projection orthographic"),
+        (
+            {"projection": "orthographic", "samples": 3, "pattern": "fibonacci", "filter": "tent", "convention": "exact"},
+            "--projection orthographic --spp 3 --pattern fibonacci --filter tent --convention exact",
+        ),
+    ],
+)
+def test_settings_give_the_bytes_of_the_program(settings: dict[str, Any], options: str, tmp_path: Path) -> None:
+    text = (SCENES / "effects" / "three-mirrors.txt").read_text()
+    file, image = tmp_path / "scene.txt", tmp_path / "picture.ppm"
+    # Parallel rays see a part of the mirrors through so small a window, too.
+    file.write_text(text.replace("RES 203 151", "RES 61 45"))
+    eyes: list[tuple[dict[str, Any], str]] = [
+        ({}, ""), ({"eye": (0.5, 0.25, 0), "look_at": (0, 0, -4)}, "--eye 0.5,0.25,0 --look-at 0,0,-4")
+    ]
+    for eye, words in eyes:
+        command = [PROGRAM, "render", "-q", "--device", "cpu", *options.split(), *words.split(), str(file)]
+        subprocess.run([*command, "-o", str(image)], check=True)
+        scene = trueray.Scene.from_file(file)
+        assert (scene.projection, scene.size) == ("perspective", (61, 45))
+        if eye:
+            scene = scene.seen_from(**eye, projection=settings.get("projection"))
+        ours = trueray.render(scene, device="cpu", **settings)
+        assert b"P6\n61 45\n255\n" + ours.tobytes() == image.read_bytes()
+        assert not settings or not np.array_equal(ours, trueray.render(trueray.Scene.from_file(file), device="cpu"))
+        assert trueray.compare(image, scene=scene, device="cpu", **settings).unexplained == 0
+        if settings:
+            assert trueray.compare(image, scene=trueray.Scene.from_file(file), device="cpu").unexplained != 0
+
+
 def test_certified_pictures_are_those_of_the_reference() -> None:
     scene = trueray.Scene.from_arrays(THREE, reflection=0.3, **SMALL)
     certified = trueray.render(scene, device=DEVICE, precision="certified")
@@ -46,9 +88,17 @@ def test_certified_pictures_are_those_of_the_reference() -> None:
 
 
 def test_without_a_word_about_it_all_spheres_are_seen_from_all_sides() -> None:
-    for size in [(60, 40), (40, 60)]:
-        for offset in [(0, 0, 0), (1e5, -3e4, 7e3)]:
-            image = trueray.render(THREE + offset, 0.7, background=0.0, size=size, device="cpu")
+    cases = [
+        (size, offset, projection)
+        for size in [(60, 40), (40, 60)]
+        for offset in [(0, 0, 0), (1e5, -3e4, 7e3)]
+        for projection in ["perspective", "orthographic"]
+    ]
+    for size, offset, projection in cases:
+        for near in [None, 8.0] if projection == "orthographic" else [None]:
+            image = trueray.render(
+                THREE + offset, 0.7, background=0.0, size=size, projection=projection, near=near, device="cpu"
+            )
             assert image.shape == (size[1], size[0], 3)
             seen = np.asarray(image.any(axis=2))
             assert 0.05 < seen.mean() < 0.9
@@ -77,7 +127,7 @@ def test_each_argument_changes_the_picture() -> None:
         "radii": (0.7, 0.7, 0.8), "colors": (0.9, 0.5, 0.2), "ambient": 0.5, "diffuse": 0.5, "specular": 0.0,
         "reflection": 0.5, "exponent": 3.0, "transmission": 0.5, "lights": [[0, 9, 0]], "light_colors": 0.1,
         "ambient_light": 0.9, "background": 0.9, "eye": (0, 0, 9), "look_at": (1, 0, 0), "up": (1, 0, 0),
-        "fov": 80.0, "near": 8.0, "window": (-0.5, 0.5, -0.2, 0.2),
+        "fov": 80.0, "near": 8.0, "window": (-0.5, 0.5, -0.2, 0.2), "projection": "orthographic",
     }
     for name, value in changes.items():
         assert not np.array_equal(picture(**{name: value}), expected), name
@@ -86,6 +136,9 @@ def test_each_argument_changes_the_picture() -> None:
 
 def test_another_eye_shares_the_scene() -> None:
     scene = trueray.Scene.from_arrays(THREE, **SMALL, lights=[[5, 5, 5]])
+    assert scene.seen_from((4, 1, 6)).projection == "perspective"
+    flat = trueray.Scene.from_arrays(THREE, **SMALL, projection="orthographic")
+    assert (flat.projection, flat.seen_from((4, 1, 6)).projection) == ("orthographic", "orthographic")
     moved = scene.seen_from((4, 1, 6), look_at=(0, 0, 0))
     made = trueray.Scene.from_arrays(THREE, **SMALL, lights=[[5, 5, 5]], eye=(4, 1, 6), look_at=(0, 0, 0))
     assert moved.eye == (4, 1, 6) and len(moved) == 3 and moved.size == (48, 32)
@@ -119,6 +172,8 @@ def test_another_eye_shares_the_scene() -> None:
         ({"eye": (0, 0)}, r"eye: expected 3 numbers, not shape \(2,\)"),
         ({"eye": (1, 1, 1), "look_at": (1, 1, 1)}, "eye and look-at are the same point"),
         ({"up": (0, 0, 0)}, "up is 0,0,0"),
+        ({"projection": "isometric"}, "projection: expected perspective or orthographic, not 'isometric'"),
+        ({"projection": "orthographic", "fov": 30.0}, "fov: an orthographic picture has no field of view"),
         ({"background": [1.0, 2.0]}, r"background: expected a number or shape \(3,\)"),
     ],
 )
@@ -132,7 +187,12 @@ def test_arguments_that_make_no_sense_are_named(changes: dict[str, Any], message
     [
         ({"precision": "best"}, "precision: expected auto, fast, robust, double or certified, not 'best'"),
         ({"convention": "mine"}, "convention: no convention is called 'mine'"),
-        ({"samples": 3}, "samples: expected a square number"),
+        ({"samples": 3}, "samples: expected a square number from 1 to 256.* pattern='fibonacci' takes any number"),
+        ({"samples": 257, "pattern": "fibonacci"}, "samples: expected an integer from 1 to 256, not 257"),
+        ({"pattern": "sobol"}, "pattern: expected grid or fibonacci, not 'sobol'"),
+        ({"filter": "tent"}, "filter: a regular grid has no tent filter, pattern='fibonacci' has"),
+        ({"filter": "mitchell", "pattern": "fibonacci"}, "filter: expected box, tent or gaussian, not 'mitchell'"),
+        ({"projection": "isometric"}, "projection: expected perspective or orthographic, not 'isometric'"),
         ({"samples": 1.5}, "samples: expected an integer"),
         ({"max_depth": -1}, "max_depth: expected an integer from 0 to 1000, not -1"),
         ({"verify": "some"}, "verify: expected a number of pixels, all or none"),

@@ -2,14 +2,14 @@
 
 use super::failure::{Failure, SCENE, USAGE};
 use super::output::errln;
-use clap::{Args, ValueEnum};
+use clap::Args;
 use glam::DVec3;
 
 use crate::doubts::doubts;
 use crate::effects::{Effects, Request};
 use crate::gpu::{Choice, Error, Gpu};
 use crate::limits;
-use crate::pattern::{Filter, Pattern};
+use crate::pattern::{Filter, Pattern, Placing};
 use crate::precision::{self, Selection, Tier};
 use crate::scene::{Fov, Scene, resolution};
 use crate::settings::{Convention, Quantize, SampleOffset, Secondary, Settings, Specular};
@@ -20,15 +20,6 @@ use crate::viewed::ViewedScene;
 #[cfg(feature = "view")]
 use crate::viewer::{FlightScale, Pose, ViewState};
 use crate::views::Placement;
-
-/// How the samples of a pixel are placed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum PatternName {
-    /// A regular grid over the pixel
-    Grid,
-    /// A Fibonacci lattice of any number of samples: edges that are nearly level or upright have many more shades
-    Fibonacci,
-}
 
 /// What decides the picture besides the scene.
 #[derive(Debug, Args)]
@@ -56,8 +47,8 @@ pub(super) struct PictureOptions {
     #[arg(long = "spp", value_name = "N", default_value = "1", value_parser = samples)]
     samples: u32,
     /// How the samples of a pixel are placed
-    #[arg(long, value_enum, default_value_t = PatternName::Grid)]
-    pattern: PatternName,
+    #[arg(long, value_enum, default_value_t = Placing::Grid)]
+    pattern: Placing,
     /// How samples are spread over the pixel and around it, with `--pattern fibonacci`
     #[arg(long, value_enum, default_value_t = Filter::Box)]
     filter: Filter,
@@ -116,16 +107,9 @@ impl PictureOptions {
 
     /// The pattern with so many samples, which `option` asks for.
     pub(super) fn pattern(&self, option: &str, count: u32) -> Result<Pattern, Failure> {
-        let pattern = match self.pattern {
-            PatternName::Grid if self.filter != Filter::Box => {
-                return Err(Failure::new(
-                    USAGE,
-                    "a regular grid has no --filter but the box\n  help: --pattern fibonacci",
-                ));
-            }
-            PatternName::Grid => Pattern::ONE,
-            PatternName::Fibonacci => Pattern::Fibonacci { count, filter: self.filter },
-        };
+        let pattern = Pattern::one_of(self.pattern, self.filter).ok_or_else(|| {
+            Failure::new(USAGE, "a regular grid has no --filter but the box\n  help: --pattern fibonacci")
+        })?;
         pattern.with_count(count).map_err(|why| {
             let help = if pattern == Pattern::ONE { "\n  help: --pattern fibonacci takes any number" } else { "" };
             Failure::new(USAGE, format!("{option} {count}: {why}{help}"))

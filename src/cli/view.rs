@@ -12,7 +12,7 @@ use super::particles::ParticleOptions;
 use crate::gpu;
 use crate::gpu::USUAL_KERNELS;
 use crate::threads::{at_once, is_alone};
-use crate::viewer::{RenderLoop, SceneFile, Server, watch};
+use crate::viewer::{ReadScene, RenderLoop, SceneFile, Server, watch};
 
 /// Arguments of `trueray view`.
 #[derive(Debug, clap::Args)]
@@ -57,7 +57,8 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         errln!("trueray: the page is served to the network, without encryption");
     }
     let view = args.picture.view_state(&loaded.scene, args.device.precision)?;
-    let render_loop = Arc::new(RenderLoop::new(SceneFile::new(&args.scene, loaded.scene, reading.options), view));
+    let read = ReadScene { scene: loaded.scene, lamps: loaded.lamps };
+    let render_loop = Arc::new(RenderLoop::new(SceneFile::new(&args.scene, read, reading.options), view));
     let no_thread = |error: std::io::Error| Failure::new(NO_THREAD, format!("the system gives no thread: {error}"));
     watch(Arc::clone(&render_loop.scene_file), Arc::clone(&render_loop.wake), Arc::clone(&render_loop.quit))
         .map_err(no_thread)?;

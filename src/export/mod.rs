@@ -98,11 +98,12 @@ pub fn export(scene: &Scene, settings: &Settings, effects: &Effects, peer: Peer)
 }
 
 /// The window as a renderer needs it that samples pixels at offsets `own` from their left and top, in parts of a pixel, so
-/// that its samples lie where the settings want them: left, right, bottom, top at distance 1 from the eye.
+/// that its samples lie where the settings want them: left, right, bottom, top, in a perspective picture at distance 1 from the eye.
 fn window(scene: &Scene, settings: &Settings, own: (f64, f64)) -> [f64; 4] {
     let window = &scene.window;
     let (sx, sy) = settings.sampling.offset();
     let right = (window.right - window.left) * (sx - own.0) / f64::from(scene.width);
     let down = (window.top - window.bottom) * (sy - own.1) / f64::from(scene.height);
-    [window.left + right, window.right + right, window.bottom - down, window.top - down].map(|x| x / window.near)
+    let distance = if settings.view.is_parallel() { 1.0 } else { window.near };
+    [window.left + right, window.right + right, window.bottom - down, window.top - down].map(|x| x / distance)
 }

@@ -13,6 +13,7 @@ use super::window;
 use crate::effects::{Effect, Effects};
 use crate::scene::{Light, Scene, Sphere};
 use crate::settings::{Settings, Specular};
+use crate::view::Projection;
 
 /// Where in its pixel POV-Ray samples.
 const SAMPLE: (f64, f64) = (0.5, 0.5);
@@ -30,19 +31,23 @@ impl fmt::Display for Triple {
 pub(super) fn write(text: &mut String, scene: &Scene, settings: &Settings, effects: &Effects) -> fmt::Result {
     let Scene { width, height, background, ambient, .. } = scene;
     let [left, right, bottom, top] = window(scene, settings, SAMPLE);
-    let direction = DVec3::new(f64::midpoint(left, right), f64::midpoint(bottom, top), -1.0);
+    let middle = DVec3::new(f64::midpoint(left, right), f64::midpoint(bottom, top), 0.0);
+    let (kind, location, direction) = match settings.view.projection() {
+        Projection::Perspective => ("perspective", DVec3::ZERO, middle - DVec3::Z),
+        Projection::Orthographic => ("orthographic", middle, DVec3::NEG_Z),
+    };
     writeln!(text, "// povray +ISCENE.pov +OPICTURE.ppm +FP File_Gamma=1 +W{width} +H{height} -A -D")?;
     writeln!(text, "#version 3.7;")?;
     let levels = levels(effects);
     writeln!(text, "global_settings {{ assumed_gamma 1 adc_bailout 0 max_trace_level {levels} }}")?;
-    writeln!(text, "camera {{ perspective location <0, 0, 0> direction {}", Triple(direction))?;
+    writeln!(text, "camera {{ {kind} location {} direction {}", Triple(location), Triple(direction))?;
     writeln!(text, "  right <{:?}, 0, 0> up <0, {:?}, 0> }}", right - left, top - bottom)?;
-    if effects.set.has(Effect::Reflections) && *background != DVec3::ZERO {
+    if let Some(radius) = sky(scene, effects) {
         writeln!(text, "background {{ rgb 0 }}")?;
         writeln!(
             text,
             "sphere {{ <0, 0, 0>, {:?} pigment {{ rgb {} }} finish {{ ambient 1 diffuse 0 }} hollow no_shadow no_reflection }}",
-            sky(scene),
+            radius,
             Triple(*background)
         )?;
     } else {
@@ -53,7 +58,7 @@ pub(super) fn write(text: &mut String, scene: &Scene, settings: &Settings, effec
     }
     for sphere in &scene.spheres {
         let body = SphereText { sphere, ambient: *ambient, settings, effects };
-        match View::of(&scene.window, sphere) {
+        match View::of(&scene.window, settings.view.projection(), sphere) {
             View::Whole => writeln!(text, "{body} }}")?,
             View::Hidden => writeln!(text, "{body} hollow no_image }}")?,
             View::Cut => {
@@ -71,10 +76,11 @@ fn levels(effects: &Effects) -> u32 {
     (effects.depth + 1).min(256)
 }
 
-/// A radius beyond everything.
-fn sky(scene: &Scene) -> f64 {
+/// The radius of a sky for the eye alone, where there is to be one: beyond everything, the window among it, where rays may begin.
+pub(super) fn sky(scene: &Scene, effects: &Effects) -> Option<f64> {
     let reach = |s: &Sphere| s.center.length() + s.scale.abs().max_element();
-    scene.spheres.iter().map(reach).fold(scene.window.near, f64::max) * 2.0
+    let is_needed = effects.set.has(Effect::Reflections) && scene.background != DVec3::ZERO;
+    is_needed.then(|| scene.spheres.iter().map(reach).fold(2.0 * scene.window.greatest(), f64::max) * 1.01)
 }
 
 /// A sphere up to its closing brace.

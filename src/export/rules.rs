@@ -2,11 +2,13 @@
 
 use glam::DVec3;
 
+use super::povray::sky;
 use super::{Obstacle, Peer};
 use crate::effects::{Effect, Effects};
 use crate::geometry::shape_indices;
 use crate::scene::{Scene, Sphere, Window};
 use crate::settings::{Quantize, Settings};
+use crate::view::Projection;
 
 /// POV-Ray finds no hit beyond this distance (its `MAX_DISTANCE`).
 const POVRAY_REACH: f64 = 1e7;
@@ -33,9 +35,9 @@ pub(super) enum View {
 }
 
 impl View {
-    pub(super) fn of(window: &Window, sphere: &Sphere) -> Self {
+    pub(super) fn of(window: &Window, projection: Projection, sphere: &Sphere) -> Self {
         let depth = (-sphere.center.z - sphere.scale.z.abs(), -sphere.center.z + sphere.scale.z.abs());
-        if depth.0 > window.near || depth.1 <= 0.0 || beside(window, sphere) {
+        if depth.0 > window.near || depth.1 <= 0.0 || beside(window, projection, sphere) {
             Self::Whole
         } else if depth.1 > window.near {
             Self::Cut
@@ -45,21 +47,20 @@ impl View {
     }
 }
 
-/// Whether the sphere lies wholly outside the pyramid of eye rays, on the far side of one of its four sides.
-fn beside(window: &Window, sphere: &Sphere) -> bool {
+/// Whether the sphere lies wholly outside the pyramid or the beam of eye rays, on the far side of one of its four sides.
+fn beside(window: &Window, projection: Projection, sphere: &Sphere) -> bool {
     let Window { near, left, right, bottom, top } = *window;
     let (left, right) = (left.min(right), left.max(right));
     let (bottom, top) = (bottom.min(top), bottom.max(top));
     let radius = sphere.scale.abs().max_element();
     // Samples may lie on the edges of the window.
     let (aside, above) = (0.01 * (right - left), 0.01 * (top - bottom));
-    let outward = [
-        DVec3::new(near, 0.0, right + aside),
-        DVec3::new(-near, 0.0, aside - left),
-        DVec3::new(0.0, near, top + above),
-        DVec3::new(0.0, -near, above - bottom),
-    ];
-    outward.into_iter().any(|normal| normal.normalize().dot(sphere.center) > radius)
+    let edges =
+        [(DVec3::X, right + aside), (-DVec3::X, aside - left), (DVec3::Y, top + above), (-DVec3::Y, above - bottom)];
+    edges.into_iter().any(|(outward, edge)| match projection {
+        Projection::Perspective => (outward * near + DVec3::Z * edge).normalize().dot(sphere.center) > radius,
+        Projection::Orthographic => outward.dot(sphere.center) - edge > radius,
+    })
 }
 
 /// What `peer` cannot express of `scene`, and what will differ slightly.
@@ -68,8 +69,8 @@ pub(super) fn judge(scene: &Scene, settings: &Settings, effects: &Effects, peer:
     found.settings(settings);
     found.both(effects);
     match peer {
-        Peer::PovRay => found.povray(),
-        Peer::Tachyon => found.tachyon(effects),
+        Peer::PovRay => found.povray(effects),
+        Peer::Tachyon => found.tachyon(settings.view.projection(), effects),
     }
     (found.obstacles, found.warnings)
 }
@@ -107,9 +108,8 @@ impl Found<'_> {
     }
 
     fn settings(&mut self, settings: &Settings) {
-        if settings.view != crate::view::View::FILE {
-            let what =
-                "a scene is exported with the camera of its file: leave --eye, --look-at, --up and --projection out";
+        if settings.view.projected(Projection::Perspective) != crate::view::View::FILE {
+            let what = "a scene is exported with the camera of its file: leave --eye, --look-at and --up out";
             self.obstacles.push(Obstacle::Settings(what.into()));
         }
         if settings.pattern.count() > 1 {
@@ -143,7 +143,11 @@ impl Found<'_> {
         }
     }
 
-    fn povray(&mut self) {
+    fn povray(&mut self, effects: &Effects) {
+        if sky(self.scene, effects).is_some_and(|radius| radius > POVRAY_REACH) {
+            let what = "BACK with reflections: a sky around all this is beyond 1e7, where POV-Ray sees nothing";
+            self.obstacles.push(Obstacle::Scene(what.into()));
+        }
         let reach = |s: &Sphere| s.center.length() + s.scale.abs().max_element();
         self.obstacle(|s| reach(s) > POVRAY_REACH, "POV-Ray sees nothing beyond a distance of 1e7");
         let small = |s: &Sphere| s.scale.abs().min_element();
@@ -160,11 +164,11 @@ impl Found<'_> {
         );
     }
 
-    fn tachyon(&mut self, effects: &Effects) {
+    fn tachyon(&mut self, projection: Projection, effects: &Effects) {
         let Scene { window, ambient, background, .. } = *self.scene;
         self.obstacle(|s| s.scale.abs() != DVec3::splat(s.scale.x.abs()), "Tachyon has spheres, but no ellipsoids");
         self.obstacle(
-            |s| View::of(&window, s) != View::Whole,
+            |s| View::of(&window, projection, s) != View::Whole,
             "not wholly beyond the image plane: Tachyon cannot cut it open for the eye alone",
         );
         if effects.set.has(Effect::Ambient) && ambient != DVec3::splat(ambient.x) {

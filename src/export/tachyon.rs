@@ -11,6 +11,7 @@ use super::window;
 use crate::effects::{Effect, Effects};
 use crate::scene::{Light, Scene, Sphere};
 use crate::settings::{Settings, Specular};
+use crate::view::Projection;
 
 /// Where in its pixel Tachyon samples: in the top right corner.
 const SAMPLE: (f64, f64) = (1.0, 0.0);
@@ -44,7 +45,15 @@ pub(super) fn write(text: &mut String, scene: &Scene, settings: &Settings, effec
     };
     writeln!(text, "BEGIN_SCENE\nRESOLUTION {width} {height}")?;
     writeln!(text, "# tachyon SCENE.dat {highlights} -format PPM -o PICTURE.ppm")?;
-    writeln!(text, "CAMERA\n  ZOOM 1\n  ASPECTRATIO 1\n  ANTIALIASING 0\n  RAYDEPTH {}", effects.depth + 1)?;
+    let projection = match settings.view.projection() {
+        Projection::Perspective => "PERSPECTIVE",
+        Projection::Orthographic => "ORTHOGRAPHIC",
+    };
+    writeln!(
+        text,
+        "CAMERA\n  PROJECTION {projection}\n  ZOOM 1\n  ASPECTRATIO 1\n  ANTIALIASING 0\n  RAYDEPTH {}",
+        effects.depth + 1
+    )?;
     writeln!(text, "  CENTER 0 0 0\n  VIEWDIR 0 0 1\n  UPDIR 0 1 0")?;
     writeln!(text, "  FRUSTUM {left:?} {right:?} {bottom:?} {top:?}\nEND_CAMERA")?;
     writeln!(text, "BACKGROUND {}", Color(*background))?;

@@ -101,7 +101,23 @@ impl Columns {
         place: Location<'_>,
         log: &mut Collector,
     ) -> Result<Self, Stop> {
-        Self::choose(names, coordinates, options).map_err(|detail| stop(log, place, || *detail))
+        let columns = Self::choose(names, coordinates, options).map_err(|detail| stop(log, place, || *detail))?;
+        match columns.ambiguous() {
+            None => Ok(columns),
+            Some(name) => Err(stop(log, second(place, name), || {
+                let message = format!("a second column `{}`, and one of them is used", shown(name.as_bytes()));
+                Detail::new(message, format!("expected each column once: {}", listed(&columns.names)))
+            })),
+        }
+    }
+
+    /// The first name of a column that is used and that is not the only one of this name.
+    fn ambiguous(&self) -> Option<&str> {
+        let kind = self.kind.map(|(Kind::Element(column) | Kind::Type(column))| column);
+        let single = [kind, self.radius.map(|(column, _)| column), self.hex, self.value].into_iter().flatten();
+        let names = self.position.into_iter().chain(self.color.into_iter().flatten()).chain(single);
+        let mut names = names.map(|column| &self.names[column]);
+        names.find(|name| self.names.iter().filter(|other| other == name).count() > 1).map(String::as_str)
     }
 
     fn choose(names: Vec<String>, coordinates: &[[&str; 3]], options: &Options) -> Result<Self, Box<Detail<'static>>> {
@@ -295,6 +311,19 @@ impl Columns {
         };
         Detail::new(format!("{} in a row of {}", count(given as u64, "field"), self.len()), expected)
     }
+}
+
+/// Where the line of column names has this one for the second time, or the property of extended XYZ that it is a field of; all of
+/// `place` where names stand otherwise.
+fn second<'a>(place: Location<'a>, name: &str) -> Location<'a> {
+    let line = place.line;
+    let is_part = |byte: Option<&u8>| byte.is_some_and(|byte| byte.is_ascii_alphanumeric() || b"_.".contains(byte));
+    let property = name.trim_end_matches(|c: char| c.is_ascii_digit()).strip_suffix('_');
+    let found = [Some(name), property].into_iter().flatten().find_map(|name| {
+        let spans = memchr::memmem::find_iter(line.bytes, name).map(|start| Span { start, end: start + name.len() });
+        spans.filter(|span| !is_part(line.bytes[..span.start].last()) && !is_part(line.bytes.get(span.end))).nth(1)
+    });
+    found.map_or(place, |span| line.place(span))
 }
 
 /// Whether a field has nothing in it, or one of the words for that.

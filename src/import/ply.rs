@@ -71,9 +71,6 @@ impl Reader for Ply {
         let Some(at) = elements.iter().position(is_vertex) else {
             return Err(stop(log, source.end(), || Detail::new("no element `vertex`", "expected it in the header")));
         };
-        for element in &elements[..at] {
-            pass(source, coding, element, log)?;
-        }
         let vertex = &elements[at];
         if let Some(list) = vertex.properties.iter().find(|property| property.length.is_some()) {
             let message = format!("`{}` of vertices is a list", shown(list.name.as_bytes()));
@@ -88,11 +85,18 @@ impl Reader for Ply {
             Some(_) => Some(LEVELS),
             None => None,
         };
+        for element in &elements[..at] {
+            pass(source, coding, element, log)?;
+        }
         if coding == Coding::Text {
             text(source, vertex, &mut columns, frame, log)?;
         } else {
             binary(source, coding, vertex, &mut columns, frame, log)?;
         }
+        for element in &elements[at + 1..] {
+            pass(source, coding, element, log)?;
+        }
+        check_end(source, coding, log)?;
         Ok(true)
     }
 }
@@ -184,19 +188,53 @@ fn pass(source: &mut Source<'_>, coding: Coding, element: &Element, log: &mut Co
         for property in &element.properties {
             let mut count = 1;
             if let Some(length) = property.length {
-                match source.bytes(length.size())? {
-                    Some(bytes) => count = length.value(bytes, coding).max(0.0) as u64,
-                    None => return Err(stop(log, source.end(), || cut(element, done))),
+                let Some(bytes) = source.bytes(length.size())? else {
+                    return Err(stop(log, source.end(), || Detail { absent: "end of file", ..cut(element, done) }));
+                };
+                let value = length.value(bytes, coding);
+                if !(value >= 0.0 && value.fract() == 0.0) {
+                    let shown = format!("{} {}", element.name, done + 1);
+                    let line = Line { number: source.last().number, bytes: shown.as_bytes() };
+                    return Err(stop(log, whole(line), || no_length(property, value)));
                 }
+                count = value as u64;
             }
             for _ in 0..count {
                 if source.bytes(property.of.size())?.is_none() {
-                    return Err(stop(log, source.end(), || cut(element, done)));
+                    let detail = if count > 1 { cut_list(property, count) } else { cut(element, done) };
+                    return Err(stop(log, source.end(), || Detail { absent: "end of file", ..detail }));
                 }
             }
         }
     }
     Ok(())
+}
+
+fn cut_list(property: &Property, count: u64) -> Detail<'static> {
+    let message = format!("the file ends within a list `{}` of {count}", shown(property.name.as_bytes()));
+    Detail::new(message, "expected as many entries as it says")
+}
+
+fn no_length(property: &Property, value: f64) -> Detail<'static> {
+    let message = format!("the list `{}` cannot have {value} entries", shown(property.name.as_bytes()));
+    Detail::new(message, "expected a whole number from 0")
+}
+
+/// Behind the last element is nothing.
+fn check_end(source: &mut Source<'_>, coding: Coding, log: &mut Collector) -> Result<(), Stop> {
+    let detail = || {
+        Detail::new("the file goes on behind its last element", "expected the end of the file")
+            .help("an element may have more rows than its number in the header says")
+    };
+    if coding == Coding::Text {
+        source.skip_blank_lines()?;
+        let more = source.line()?;
+        return more.map_or(Ok(()), |line| Err(stop(log, whole(line), detail)));
+    }
+    match source.bytes(1)? {
+        None => Ok(()),
+        Some(_) => Err(stop(log, source.end(), || Detail { absent: "more bytes", ..detail() })),
+    }
 }
 
 /// Everything up to `end_header`.

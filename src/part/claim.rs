@@ -110,12 +110,7 @@ impl Claim {
             return Some(["size".into(), own, others]);
         }
         let names = [self, other].map(|claim| claim.value.as_object().into_iter().flat_map(|fields| fields.keys()));
-        names.into_iter().flatten().find_map(|name| {
-            let [own, others] = [self, other].map(|claim| claim.value.get(name).unwrap_or(&Value::Null));
-            // Either may have a field that the other has not.
-            let swapped = || first_difference(name, others, own).map(|[field, others, own]| [field, own, others]);
-            first_difference(name, own, others).or_else(swapped)
-        })
+        first_difference(&self.value, &other.value, names.into_iter().flatten())
     }
 
     /// Whether the same device has rendered both, or each pixel is the CPU reference's, which is the same everywhere.

@@ -35,7 +35,7 @@ pub use preview::{PreviewMode, PreviewOptions};
 pub use render_loop::{MAX_PAGES, Opener, RenderLoop};
 pub use requests::PageRequest;
 pub use sample_map::{SAMPLE_COLORS, SAMPLE_MAP, SLOTS, SampleColors, SampleMap};
-pub use scene_file::{SceneError, SceneFile, SceneSlot, watch};
+pub use scene_file::{ReadScene, SceneError, SceneFile, SceneSlot, watch};
 pub use server::{Access, Server};
 pub use session::{MAX_UNACKNOWLEDGED, Outgoing, Session};
 pub use view_state::ViewState;

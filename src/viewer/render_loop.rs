@@ -8,7 +8,7 @@ use std::time::Duration;
 use super::cost_model::CostModel;
 use super::messages::PageMessage;
 use super::pose::FlightScale;
-use super::scene_file::{SceneError, SceneFile};
+use super::scene_file::{ReadScene, SceneError, SceneFile};
 use super::session::Session;
 use super::session_renderer::{Context, SessionRenderer};
 use super::view_state::ViewState;
@@ -16,7 +16,6 @@ use super::wake_signal::WakeSignal;
 use crate::gpu::{self, Gpu};
 use crate::kept::Kept;
 use crate::panics::message;
-use crate::scene::Scene;
 use crate::threads::lock;
 
 /// Pages at once.
@@ -50,7 +49,10 @@ pub struct RenderLoop {
 impl RenderLoop {
     /// For the scene of `scene_file`; pages start with the view `start`.
     pub fn new(scene_file: SceneFile, start: ViewState) -> Self {
-        let scale = lock(&scene_file.slot).fresh.as_ref().map_or(FlightScale { distance: 1.0 }, FlightScale::of);
+        let scale = lock(&scene_file.slot)
+            .fresh
+            .as_ref()
+            .map_or(FlightScale { distance: 1.0 }, |read| FlightScale::of(&read.scene));
         Self {
             scene_file: Arc::new(scene_file),
             wake: Arc::default(),
@@ -77,12 +79,12 @@ impl RenderLoop {
 
     /// Renders until `quit`. Opens the device again where it was lost, or where anything on the way to a picture has panicked.
     pub fn run(&self, open: &mut Opener) {
-        let Some(mut scene) = lock(&self.scene_file.slot).fresh.take() else { return };
+        let Some(mut read) = lock(&self.scene_file.slot).fresh.take() else { return };
         let mut costs = CostModel::default();
         // Before the first page comes its kernels can be compiled.
         let warm_up = Arc::new(Session::new(self.start.clone(), *lock(&self.scale)));
         while !self.quit.load(Ordering::Relaxed) {
-            let work = || self.work(open()?.as_deref(), &mut scene, &mut costs, &warm_up);
+            let work = || self.work(open()?.as_deref(), &mut read, &mut costs, &warm_up);
             // All that was in the making goes with the device; what stays is complete at each step.
             match catch_unwind(AssertUnwindSafe(work)) {
                 Ok(Ok(())) => {}
@@ -112,7 +114,7 @@ impl RenderLoop {
     fn work(
         &self,
         gpu: Option<&Gpu>,
-        scene: &mut Scene,
+        read: &mut ReadScene,
         costs: &mut CostModel,
         warm_up: &Arc<Session>,
     ) -> Result<(), gpu::Error> {
@@ -123,7 +125,7 @@ impl RenderLoop {
             renderers.push(SessionRenderer::new(Arc::clone(warm_up), gpu, *costs));
         }
         while !self.quit.load(Ordering::Relaxed) {
-            if self.reload_scene(scene, &mut revision, &mut error, &mut renderers) {
+            if self.reload_scene(read, &mut revision, &mut error, &mut renderers) {
                 kept = Kept::default();
             }
             self.update_renderers(&mut renderers, warm_up, gpu, *costs);
@@ -138,7 +140,8 @@ impl RenderLoop {
                 let scene_file = self.scene_file.path.to_string_lossy();
                 *lock(&self.current) = Some((Arc::clone(&renderer.session), renderer.session.version()));
                 let result = renderer.advance(&mut Context {
-                    scene,
+                    scene: &mut read.scene,
+                    lamps: read.lamps,
                     kept: &kept,
                     scene_file: &scene_file,
                     error: error.as_ref(),
@@ -160,7 +163,7 @@ impl RenderLoop {
     /// Whether there is another scene now.
     fn reload_scene(
         &self,
-        scene: &mut Scene,
+        read: &mut ReadScene,
         revision: &mut u64,
         error: &mut Option<SceneError>,
         renderers: &mut [SessionRenderer],
@@ -175,8 +178,8 @@ impl RenderLoop {
         drop(slot);
         let replaced = fresh.is_some();
         if let Some(fresh) = fresh {
-            *scene = fresh;
-            *lock(&self.scale) = FlightScale::of(scene);
+            *read = fresh;
+            *lock(&self.scale) = FlightScale::of(&read.scene);
             lock(&self.sessions).iter().for_each(|session| session.clear_failure());
         }
         for renderer in renderers {

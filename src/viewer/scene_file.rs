@@ -9,7 +9,7 @@ use std::time::{Duration, SystemTime};
 use serde::Serialize;
 
 use super::wake_signal::WakeSignal;
-use crate::import::{self, Format, Import};
+use crate::import::{self, Format, Import, Imported, Lamps};
 use crate::panics::message;
 use crate::scene::{Scene, Severity, parse};
 use crate::threads::lock;
@@ -26,11 +26,26 @@ pub struct SceneError {
     pub text: String,
 }
 
+/// A scene as it was read.
+#[derive(Debug)]
+pub struct ReadScene {
+    /// Its spheres, and the lights for the eye that was seen by last.
+    pub scene: Scene,
+    /// The lights of particles, which turn with the eye.
+    pub lamps: Option<Lamps>,
+}
+
+impl From<Scene> for ReadScene {
+    fn from(scene: Scene) -> Self {
+        Self { scene, lamps: None }
+    }
+}
+
 /// What is known of the scene file.
 #[derive(Debug, Default)]
 pub struct SceneSlot {
     /// A scene that nobody has taken yet.
-    pub fresh: Option<Scene>,
+    pub fresh: Option<ReadScene>,
     /// What is wrong with the file as it is now.
     pub error: Option<SceneError>,
     /// Grows with every time that it is read.
@@ -50,7 +65,7 @@ pub struct SceneFile {
 
 impl SceneFile {
     /// A file that has been read as `scene`; particles in it were imported like this.
-    pub fn new(path: &Path, scene: Scene, import: import::Options) -> Self {
+    pub fn new(path: &Path, scene: ReadScene, import: import::Options) -> Self {
         let slot = SceneSlot { fresh: Some(scene), error: None, revision: 1 };
         Self { path: path.to_owned(), slot: Mutex::new(slot), import }
     }
@@ -71,17 +86,20 @@ impl SceneFile {
     }
 }
 
-fn read(name: &str, path: &Path, import: &import::Options) -> Result<Scene, SceneError> {
+fn read(name: &str, path: &Path, import: &import::Options) -> Result<ReadScene, SceneError> {
     let text = std::fs::read(path)
         .map_err(|error| SceneError { line: 0, text: format!("cannot read the scene {name}: {error}") })?;
-    let parsed = match Format::of(&text) {
-        Some(format) => Import::new(name, format, &text[..], import.clone()).first().parsed,
-        None => parse(name, &text),
+    let (parsed, lamps) = match Format::of(&text) {
+        Some(format) => {
+            let Imported { parsed, lamps, .. } = Import::new(name, format, &text[..], import.clone()).first();
+            (parsed, lamps)
+        }
+        None => (parse(name, &text), None),
     };
     let line = parsed.diagnostics.iter().find(|diagnostic| diagnostic.severity == Severity::Error);
     let line = line.map_or(0, |diagnostic| diagnostic.line);
     let report = parsed.report(false);
-    parsed.scene.ok_or(SceneError { line, text: report })
+    parsed.scene.map(|scene| ReadScene { scene, lamps }).ok_or(SceneError { line, text: report })
 }
 
 /// Time of the last change and size: what a poll compares.

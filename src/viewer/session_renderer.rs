@@ -20,12 +20,14 @@ use super::view_state::ViewState;
 use crate::effects::Effects;
 use crate::engine::{Backend, ms};
 use crate::gpu::{self, Gpu};
+use crate::import::Lamps;
 use crate::kept::Kept;
 use crate::limits;
 use crate::pattern::Pattern;
 use crate::precision::{Selection, Tier};
 use crate::scene::Scene;
 use crate::settings::Settings;
+use crate::view::View;
 use coarse::{Framing, Shown, fitted, framed};
 use pass::{FrameStats, Pass};
 use reduced::{MANY_SPHERES, Reduced};
@@ -113,6 +115,8 @@ pub(super) struct SessionRenderer<'g> {
 #[derive(Debug)]
 pub(super) struct Context<'s> {
     pub(super) scene: &'s mut Scene,
+    /// The lights of particles, which turn with the eye.
+    pub(super) lamps: Option<Lamps>,
     /// What its pictures leave to the next eye.
     pub(super) kept: &'s Kept,
     pub(super) scene_file: &'s str,
@@ -124,6 +128,13 @@ pub(super) struct Context<'s> {
 }
 
 impl Context<'_> {
+    /// Turns the lights of particles with this eye, as `trueray render` does.
+    fn light(&mut self, view: &View) {
+        if let Some(lamps) = self.lamps {
+            self.scene.lights = lamps.seen_by(view);
+        }
+    }
+
     /// The scene, with what its pictures leave to the next eye.
     fn shown(&mut self) -> Shown<'_> {
         (self.scene, Some(self.kept))
@@ -208,6 +219,9 @@ impl<'g> SessionRenderer<'g> {
                 _ => return self.render_reduced(context),
             }
         }
+        if let Some(job) = &self.job {
+            context.light(&job.settings.view);
+        }
         self.run_one_shots(context);
         if is_large && self.is_outdated() {
             return Ok(());
@@ -241,6 +255,7 @@ impl<'g> SessionRenderer<'g> {
         let start = Instant::now();
         let (version, view) = self.session.view();
         let settings = view.settings();
+        context.light(&settings.view);
         let asked = view.size(context.scene);
         let size = fitted(asked, context.pixels);
         let Plan { effects, selection, problem } = Plan::of(context.shown(), &settings, &view, self.gpu);

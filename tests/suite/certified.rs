@@ -336,11 +336,18 @@ fn a_certificate_is_of_one_picture() {
     );
     for (arguments, message) in [
         ("a.ppm --scene moved.txt --certificate a.json", "of something else: scene.sha256 is"),
-        ("a.ppm --scene scene.txt --certificate exact.json", "of something else: picture.sha256 is"),
-        ("exact.ppm --scene scene.txt --certificate a.json --convention exact", "of something else: picture.sha256 is"),
+        ("exact.ppm --scene scene.txt --certificate a.json", "of something else: picture.sha256 is"),
+        // What was asked for, before what follows from it.
+        ("a.ppm --scene scene.txt --certificate exact.json", "of something else: settings.quantize is \"round\" there"),
+        ("exact.ppm --scene scene.txt --certificate a.json --convention exact", "of something else: settings.quantize"),
         (
             "a.ppm --scene scene.txt --certificate a.json --max-depth 2",
-            "of something else: depth is 3 there and 2 here",
+            "of something else: settings.max_depth is 3 there and 2 here",
+        ),
+        ("a.ppm --scene scene.txt --certificate a.json --effects=-shadows", "of something else: effects"),
+        (
+            "a.ppm --scene scene.txt --certificate a.json --projection orthographic",
+            "of something else: settings.view.projection is none there and \"orthographic\" here",
         ),
     ] {
         assert_run(path, &format!("verify --device cpu {arguments}"), 1, message);

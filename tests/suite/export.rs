@@ -10,8 +10,9 @@ use trueray::film::{Leniency, Picture, read_picture};
 use trueray::pattern::Pattern;
 use trueray::scene::Scene;
 use trueray::settings::{Quantize, SampleOffset, Settings, Specular};
+use trueray::view::Projection;
 
-use crate::support::{cpu_picture, root, say_skipped, scene, scene_files, scene_of};
+use crate::support::{cpu_picture, orthographic, root, say_skipped, scene, scene_files, scene_of, widened};
 
 const BALL: &str = "SPHERE ball 0.5 1 -6 2 2 2 0.9 0.5 0.25 0.5 0.25 0.75 0 30\n";
 const LAMP: &str = "LIGHT lamp 3 4 5 1 0.5 0.25\nLIGHT dark 1 1 1 0 0 0\n";
@@ -88,6 +89,34 @@ fn povray_cuts_spheres_open_for_the_eye_alone() {
     assert!(!behind.contains("no_image") && !behind.contains("clipped_by"), "{behind}");
 }
 
+/// A window that is neither around the view nor square, and spheres that only the one or only the other projection shows or cuts.
+#[test]
+fn parallel_rays_are_those_of_the_window() {
+    let mut scene = scene_of(&format!("{BALL}{LAMP}"));
+    scene.window.near = 2.0;
+    (scene.window.left, scene.window.right, scene.window.bottom, scene.window.top) = (-3.0, 5.0, -1.0, 3.0);
+    (scene.width, scene.height) = (8, 4);
+    let settings = orthographic(Settings { quantize: Quantize::Round, ..Settings::exact() });
+    assert_has(
+        &written(&scene, &settings, Peer::PovRay).unwrap().text,
+        &[
+            "camera { orthographic location <1.0, 1.0, 0.0> direction <0.0, 0.0, -1.0>\n  right <8.0, 0, 0> up <0, 4.0, 0> }",
+        ],
+    );
+    // Samples in the upper right corner of a pixel, whose side is 1.
+    let written = written(&scene, &settings, Peer::Tachyon).unwrap().text;
+    assert_has(&written, &["PROJECTION ORTHOGRAPHIC\n", "FRUSTUM -3.5 4.5 -1.5 2.5\n"]);
+
+    let cut = |place: &str, settings: &Settings| {
+        text(&format!("SPHERE s {place} 0.4 0.4 0.4 1 1 1 1 0 0 0 1\nAMBIENT 1 1 1"), settings, Peer::PovRay)
+            .contains("clipped_by")
+    };
+    let parallel = orthographic(Settings::exact());
+    assert!(cut("0 0 -1.2", &Settings::exact()) && cut("0 0 -1.2", &parallel));
+    assert!(cut("1.6 0 -1.2", &Settings::exact()) && !cut("1.6 0 -1.2", &parallel), "beside the beam");
+    assert!(!cut("1.3 0 -0.7", &Settings::exact()) && cut("1.3 0 -0.7", &parallel), "beside the pyramid");
+}
+
 #[test]
 fn tachyon_gets_every_term() {
     let file =
@@ -155,6 +184,7 @@ fn what_cannot_be_expressed_is_named() {
         (BALL.replace("-6 2 2 2", "-2e7 1e6 1e6 1e6"), "nothing beyond a distance of 1e7"),
         (BALL.replace("2 2 2", "1e-4 1e-4 1e-4"), "tolerance of 1e-3"),
         (BALL.replace("-6 2 2 2", "-9e6 2 2 2"), "too many radii from the origin"),
+        (MIRRORS.replace("-6 1 1 1", "-9e6 9.5e5 9.5e5 9.5e5") + "BACK 1 0 0", "a sky around all this is beyond 1e7"),
     ];
     for (statements, what) in povray {
         let found = obstacles(&statements, Peer::PovRay);
@@ -253,6 +283,8 @@ fn the_program_writes_and_has_exit_codes() {
     run("export s.txt --to mitsuba", 2, "expected povray or tachyon");
     run("export s.txt", 2, "--to");
     run("export s.txt --to povray --spp 4", 2, "one sample a pixel");
+    run("export s.txt --to povray --eye 0,0,1 --projection orthographic", 2, "leave --eye, --look-at and --up out");
+    assert!(run("export s.txt --to povray --projection orthographic", 0, "").contains("camera { orthographic "));
     run("export s.txt --to povray --effects=-shadows", 0, "");
     run("export s.txt --to povray --effects=+shadows", 2, "leave --effects out");
     run("export egg.txt --to tachyon -o egg.dat", 3, "egg.txt: Tachyon cannot express this scene:\n  sphere 'ball': ");
@@ -300,16 +332,26 @@ fn installed_renderers_show_our_picture() {
             ["basic/off-centre-window", "effects/coloured-shadows", "effects/same-place"],
         ),
     ];
-    for (peer, quantize, names) in cases {
+    for ((peer, quantize, names), projection) in cases
+        .into_iter()
+        .flat_map(|case| [Projection::Perspective, Projection::Orthographic].map(|projection| (case, projection)))
+    {
         for name in names {
             let folder = tempfile::tempdir().unwrap();
-            let scene = scene(&root().join("scenes").join(name).with_extension("txt"));
-            let settings = Settings { quantize, ..Settings::classic() };
+            let mut scene = scene(&root().join("scenes").join(name).with_extension("txt"));
+            let mut settings = Settings { quantize, ..Settings::classic() };
+            if projection == Projection::Orthographic {
+                settings = orthographic(settings);
+                scene = widened(scene);
+                // Of round numbers: no ray touches a sphere.
+                scene.window.left -= 0.0117;
+                scene.window.top += 0.0071;
+            }
             let Some(theirs) = picture_of(peer, &scene, &settings, folder.path(), test) else { break };
             let (ours, _) = cpu_picture::<f64>(&scene, &settings, &Effects::of(&scene.viewed(&settings)));
             let differing = Difference::between(&ours, &theirs).unwrap().differing;
             // Each rounds on its own: a level here and there.
-            assert!(differing.over_0 <= 3 && differing.over_1 == 0, "{peer}, {name}: {differing:?}");
+            assert!(differing.over_0 <= 3 && differing.over_1 == 0, "{peer}, {name}, {projection:?}: {differing:?}");
         }
     }
 }

@@ -24,6 +24,8 @@ const PLY: &str = "ply\nformat ascii 1.0\ncomment none\nelement camera 1\nproper
     property float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n\
     property double radius\nend_header\n9\n1 2 3 255 0 0 0.5\n4 5 6 0 0 51 0.25\n";
 
+const FACE: &str = "element face 1\nproperty list uchar int vertex_indices\n";
+
 fn import(text: impl AsRef<[u8]>, options: &Options) -> Vec<Imported> {
     let text = text.as_ref();
     Import::new("file", Format::of(text).expect("a known format"), text, options.clone()).collect()
@@ -214,11 +216,51 @@ fn binary_points_are_those_of_the_text() {
         assert_eq!(read(&file), read(PLY), "{name}");
         let cut = fault_with(&file[..file.len() - 1], &Options::default());
         assert_eq!((&*cut.token, &*cut.message), ("end of file", "the file ends after 1 of 2 `vertex`"));
+        let more = fault_with([&file[..], b"\0"].concat(), &Options::default());
+        assert_eq!((&*more.token, &*more.message), ("more bytes", "the file goes on behind its last element"));
         let at = file.len() - 8;
         file[at..].fill(0xff);
         let fault = fault_with(&file, &Options::default());
         assert_eq!((&*fault.token, &*fault.message), ("vertex 2", "`NaN` is not a finite number"));
     }
+}
+
+#[test]
+fn lists_of_impossible_lengths_are_refused() {
+    let header = |length: &str| {
+        format!(
+            "ply\nformat binary_little_endian 1.0\nelement face 2\nproperty list {length} uchar corners\nelement vertex 1\n\
+             property float x\nproperty float y\nproperty float z\nend_header\n"
+        )
+    };
+    let end = "expected as many entries as it says";
+    let whole = "expected a whole number from 0";
+    for (length, bytes, token, message, expected) in [
+        ("char", &[1, 9, 0xff][..], "face 2", "the list `corners` cannot have -1 entries", whole),
+        ("float", &[0, 0, 0, 0x3f], "face 1", "the list `corners` cannot have 0.5 entries", whole),
+        ("float", &[0, 0, 0xc0, 0x7f], "face 1", "the list `corners` cannot have NaN entries", whole),
+        ("uint", &[0xff; 4], "end of file", "the file ends within a list `corners` of 4294967295", end),
+    ] {
+        // What follows is enough for the vertex.
+        let text = [header(length).as_bytes(), bytes, &[0; 20]].concat();
+        let fault = fault_with(&text, &Options::default());
+        assert_eq!((&*fault.token, &*fault.message, &*fault.expected), (token, message, expected), "{length}");
+    }
+    let text = [header("uchar").as_bytes(), &[2, 7, 7, 0], &[0; 12]].concat();
+    assert_positions(&read(text), &[[0.0; 3]]);
+}
+
+#[test]
+fn columns_that_are_not_used_may_share_a_name() {
+    for text in ["x,y,z,v,v\n1,2,3,4,5\n", "x,y,z,type,v,v\n1,2,3,1,4,5\n"] {
+        assert_positions(&read(text), &[[1.0, 2.0, 3.0]]);
+        let fault = fault_with(text, &by("v"));
+        assert_eq!(
+            (fault.line, &*fault.token, &*fault.message),
+            (1, "v", "a second column `v`, and one of them is used")
+        );
+    }
+    read(DUMP.replace(" id type x y z q", " q type x y z q"));
 }
 
 #[test]
@@ -256,6 +298,13 @@ fn malformed_xyz_is_refused_where_it_is_wrong() {
         ("1\nProperties=a:S:1:b:R:1\nO 1\n", 2, 1, "Properties=a:S:1:b:R:1", "no columns of coordinates among a, b"),
         ("1\nLattice=\"1 0 x\" \nO 0 0 0\n", 2, 14, "x", "`x` is not a number"),
         ("1\nc\nO 0 0 0\nO 1 0 0\n", 4, 1, "O 1 0 0", "`O 1 0 0` is no number of atoms"),
+        (
+            "1\nProperties=species:S:1:pos:R:3:pos:R:3\nO 0 0 0 1 1 1\n",
+            2,
+            32,
+            "pos",
+            "a second column `pos_1`, and one of them is used",
+        ),
         ("2\nc\nC 0 0 1e17\nO 1 0 0\n", 4, 8, "end of line", "the particles of frame 1 reach too far"),
         ("1\nLattice=\"1 0 0\" \nO 0 0 0\n", 2, 10, "1 0 0", "a lattice of 3 numbers"),
         ("1\nProperties=species:S:1:pos:R:3\nO 0 0 0 1\n", 3, 10, "end of line", "5 fields in a row of 4"),
@@ -287,6 +336,7 @@ fn malformed_dumps_are_refused_where_they_are_wrong() {
         (&with("1 2 3 -0.5", "1 2 3"), 10, 10, "end of line", "5 fields in a row of 6"),
         (&with(" x y z", " fx fy fz"), 9, 1, head, "no columns of coordinates"),
         (&with("ITEM: NUMBER OF ATOMS\n2\n", ""), 7, 1, "ITEM: ATOMS id type x y z q", "atoms without their number"),
+        (&with(" x y z q", " x y z x"), 9, 27, "x", "a second column `x`"),
         (&unboxed, 5, 1, "ITEM: ATOMS id type xs ys zs q", "fractions of a box without a box"),
     ]);
     let more = fault_with(with("ATOMS\n2", "ATOMS\n1"), &Options { frames: Frames::All, ..Options::default() });
@@ -330,6 +380,10 @@ fn malformed_tables_and_points_are_refused_where_they_are_wrong() {
         ("x,y,z\n1,2,3,4\n", 2, 8, "end of line", "4 fields in a row of 3"),
         ("x,y,z\n", 1, 6, "end of line", "a table without rows"),
         ("x,y,mass\n1,2,3\n", 1, 1, "x,y,mass", "no columns of coordinates among x, y, mass"),
+        ("x,y,z,x\n1,2,3,4\n", 1, 7, "x", "a second column `x`"),
+        ("\"x\",\"y\",\"z\",\"y\"\n1,2,3,4\n", 1, 14, "y", "a second column `y`"),
+        ("x,y,z,radius,radius\n1,2,3,1,1\n", 1, 14, "radius", "a second column `radius`"),
+        ("x,y,z,r,g,b,type,g\n1,2,3,1,1,1,1,1\n", 1, 18, "g", "a second column `g`"),
         ("x,y,z,radius\n1,2,3,0\n", 2, 7, "0", "a radius cannot be 0"),
         ("x,y,z,r,g,b\n1,2,3,0,256,0\n", 2, 9, "256", "`256` is no part of a colour"),
         ("x,y,z,color\n1,2,3,#12345\n", 2, 7, "#12345", "`#12345` is no colour"),
@@ -337,6 +391,9 @@ fn malformed_tables_and_points_are_refused_where_they_are_wrong() {
         (&PLY.replace("vertex 2", "vertex 3"), 17, 18, "end of file", "ends after 2 of 3 `vertex`"),
         (&PLY.replace("ascii", "ebcdic"), 2, 1, "format ebcdic 1.0", "is not understood"),
         (&PLY.replace("4 5 6 0", "4 5 6"), 17, 16, "end of line", "6 fields in a row of 7"),
+        (&format!("{PLY}7 8 9 0 0 0 1\n"), 18, 1, "7 8 9 0 0 0 1", "goes on behind its last element"),
+        (&PLY.replace("end_header", &format!("{FACE}end_header")), 19, 18, "end of file", "ends after 0 of 1 `face`"),
+        (&PLY.replace("double radius", "double x"), 14, 1, "end_header", "a second column `x`"),
         ("data_X\nloop_\n_atom_site_label\n_atom_site_fract_x\n", 4, 1, "_atom_site_fract_x", "fractional coordinates"),
         ("ply\nformat ascii 1.0\nend_header\n", 3, 11, "end of line", "no element `vertex`"),
     ]);

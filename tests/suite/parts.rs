@@ -373,6 +373,23 @@ fn what_is_there_and_whole_is_not_rendered_again() {
     assert!(place.read("whole.png") == place.read("plain.png"));
 }
 
+/// What was asked for is named before what follows from it, such as the tier.
+#[test]
+fn the_cause_of_another_picture_is_named() {
+    if gpu("parts::the_cause_of_another_picture_is_named").is_none() {
+        return;
+    }
+    let place = folder();
+    let run = |options: &str, code: i32, message: &str| {
+        place.exits(&format!("render --device gpu --res 50x40 --resume scene.txt -o a.png {options}"), code, message)
+    };
+    run("--precision fast", 0, "");
+    let asked = "is another picture: settings.view.projection is none there and \"orthographic\" here";
+    run("--precision double --projection orthographic", 6, asked);
+    run("--precision double --max-depth 1", 6, "is another picture: settings.max_depth is 3 there and 1 here");
+    run("--precision double", 6, "is another picture: precision is \"fast\" there and \"double\" here");
+}
+
 /// Random ends of a division, each repeated until all parts are there. `TRUERAY_KILLS` says how many.
 #[cfg(unix)]
 #[test]

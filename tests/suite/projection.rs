@@ -313,7 +313,6 @@ fn what_does_not_go_with_it_is_refused() {
         ("render --views views.csv scene.txt -o f.png", 3, "an orthographic picture has no field of view"),
         ("render atoms.xyz -o f.png", 2, "particles are framed for an eye"),
         ("view scene.txt", 2, "the live view is perspective only"),
-        ("export scene.txt --to povray", 2, "--projection"),
     ] {
         folder.says(&format!("{arguments} --projection orthographic"), code, message);
     }
@@ -331,6 +330,11 @@ fn the_program_knows_it_everywhere() {
         "of this scene",
     );
     folder.says("verify --device cpu a.png --scene scene.txt", 1, "");
+    folder.says(
+        "verify --device cpu a.png --scene scene.txt --certificate c.json",
+        1,
+        "of something else: settings.view.projection is \"orthographic\" there and none here",
+    );
     folder.says(&format!("compare --device cpu --scene scene.txt a.png {option} --explain"), 0, "");
     folder.says("compare --device cpu --scene scene.txt a.png", 1, "unexplained");
     folder.says(&format!("pixel --device cpu scene.txt 24 18 {option}"), 0, "");

@@ -15,13 +15,14 @@ use serde_json::Value;
 use trueray::effects::{self, Effects};
 use trueray::engine::{Backend, Engine, render_picture};
 use trueray::gpu::{Choice, Gpu, USUAL_KERNELS};
+use trueray::import::{self, Format, Import, Options};
 use trueray::pattern::Pattern;
 use trueray::precision::{self, Selection};
 use trueray::scene::{Scene, parse};
 use trueray::settings::Settings;
 use trueray::viewer::{
-    Access, Canvas, FlightScale, MAX_PAGES, MAX_UNACKNOWLEDGED, Outgoing, PageRequest, Patch, Pose, RenderLoop,
-    SAMPLE_COLORS, SAMPLE_MAP, SLOTS, SceneFile, Session, ViewState, watch,
+    Access, Canvas, FlightScale, MAX_PAGES, MAX_UNACKNOWLEDGED, Outgoing, PageRequest, Patch, Pose, ReadScene,
+    RenderLoop, SAMPLE_COLORS, SAMPLE_MAP, SLOTS, SceneFile, Session, ViewState, watch,
 };
 
 use crate::support::gpu;
@@ -63,7 +64,7 @@ impl Work {
         let path = folder.path().join("scene.txt");
         std::fs::write(&path, text).unwrap();
         let render_loop =
-            Arc::new(RenderLoop::new(SceneFile::new(&path, scene(text), trueray::import::Options::default()), start()));
+            Arc::new(RenderLoop::new(SceneFile::new(&path, scene(text).into(), Options::default()), start()));
         watch(Arc::clone(&render_loop.scene_file), Arc::clone(&render_loop.wake), Arc::clone(&render_loop.quit))
             .unwrap();
         let gpu = Arc::new(Mutex::new(None));
@@ -640,8 +641,56 @@ fn a_large_scene_is_shown_in_part_and_then_whole() {
     assert_eq!(page.rgb, rendered(None, &scene(&text), &page.session.view().1));
 }
 
+/// The lights of particles turn with the eye, as those of `trueray render --eye` do.
+#[test]
+fn lights_of_particles_go_with_the_eye() {
+    let atoms = "4\n\nO 0 0 0\nC 2 0.5 0\nN 0 2 1\nH -1 1 2\n";
+    let picture_of = |view: &ViewState| {
+        let (size, settings) = ((48, 36), view.settings());
+        let options = Options { size, view: settings.view, ..Default::default() };
+        rendered(None, &import::scene("atoms", atoms.as_bytes(), &options).unwrap(), view)
+    };
+    let options = Options { size: (48, 36), ..Default::default() };
+    let work = work_on(atoms, options, start(), || Ok(None));
+    let mut page = work.page();
+    page.finish();
+    assert!(page.rgb == picture_of(&page.session.view().1), "before the eye moves");
+    page.send(r#"{"do":"orbit","right":0.9,"up":0.4}"#);
+    page.finish();
+    let view = page.session.view().1;
+    assert!(page.rgb == picture_of(&view), "after it has moved");
+    // Of two pages each has its own.
+    let mut other = work.page();
+    other.finish();
+    assert!(other.rgb == picture_of(&other.session.view().1) && other.rgb != page.rgb);
+    page.send(r#"{"do":"choose","max_depth":2}"#);
+    page.finish();
+    assert!(page.rgb == picture_of(&view));
+    // The file changes, and is read again.
+    work.edit(&atoms.replace("H -1 1 2", "H -1 1 1.5"));
+    let before = page.rgb.clone();
+    page.until(|words| words["finished"] == true && words["scene"]["lights"] == 32);
+    while page.rgb == before {
+        page.until(|words| words["finished"] == true);
+    }
+    let moved = atoms.replace("H -1 1 2", "H -1 1 1.5");
+    let options = Options { size: (48, 36), view: view.settings().view, ..Default::default() };
+    let scene = import::scene("atoms", moved.as_bytes(), &options).unwrap();
+    assert!(page.rgb == rendered(None, &scene, &page.session.view().1));
+}
+
 /// A render loop whose pages start with this view and that opens a device like this.
 fn work_with(
+    start: ViewState,
+    open: impl FnMut() -> Result<Option<Arc<Gpu>>, trueray::gpu::Error> + Send + 'static,
+) -> Work {
+    work_on(SCENE, Options::default(), start, open)
+}
+
+/// The same for another file, whose particles are imported like this.
+fn work_on(
+    text: &str,
+    options: Options,
     start: ViewState,
     open: impl FnMut() -> Result<Option<Arc<Gpu>>, trueray::gpu::Error> + Send + 'static,
 ) -> Work {
@@ -650,8 +699,15 @@ fn work_with(
     work.render_loop.wake.raise();
     work.thread.take().unwrap().join().unwrap();
     let path = work.folder.path().join("scene.txt");
-    work.render_loop =
-        Arc::new(RenderLoop::new(SceneFile::new(&path, scene(SCENE), trueray::import::Options::default()), start));
+    std::fs::write(&path, text).unwrap();
+    let read = match Format::of(text.as_bytes()) {
+        None => scene(text).into(),
+        Some(format) => {
+            let imported = Import::new("file", format, text.as_bytes(), options.clone()).first();
+            ReadScene { scene: imported.parsed.scene.unwrap(), lamps: imported.lamps }
+        }
+    };
+    work.render_loop = Arc::new(RenderLoop::new(SceneFile::new(&path, read, options), start));
     watch(
         Arc::clone(&work.render_loop.scene_file),
         Arc::clone(&work.render_loop.wake),
@@ -732,7 +788,7 @@ fn every_legal_scene_is_shown_or_refused() {
         legal += 1;
         {
             let mut slot = work.render_loop.scene_file.slot.lock().unwrap();
-            (slot.fresh, slot.error) = (Some(fresh), None);
+            (slot.fresh, slot.error) = (Some(fresh.into()), None);
             slot.revision += 1;
         }
         work.render_loop.wake.raise();

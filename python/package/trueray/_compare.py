@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Union
 import numpy as np
 
 from . import _native
-from ._render import renderer, settings_of
+from ._render import projected, renderer, settings_of
 from ._scene import Scene
 
 if TYPE_CHECKING:
@@ -51,6 +51,9 @@ def compare(
     convention: str | None = None,
     max_depth: int = 3,
     samples: int | None = None,
+    pattern: str = "grid",
+    filter: str = "box",
+    projection: str | None = None,
 ) -> Comparison:
     """Where and how the pictures differ; each is an array (height, width, 3) of uint8 or the name of a PPM or PNG file.
 
@@ -63,9 +66,9 @@ def compare(
     difference, explanation, report = _native.compare(
         source("a", a),
         None if b is None else source("b", b),
-        None if scene is None else scene._packed,
+        None if scene is None else projected(scene, projection),
         None if scene is None else renderer(str(device)),
-        settings_of(scene, convention, max_depth, samples),
+        settings_of(scene, convention, max_depth, samples, pattern, filter),
         precision,
     )
     found = json.loads(difference)

@@ -17,6 +17,8 @@ TOWARDS_EYE = (0.25, 0.35, 1.0)
 ROOM = 1.03
 #: The image plane's distance in radii of the scene; what is nearer to the eye is not seen.
 NEAR = 1e-3
+#: The angle from the lower to the upper edge of a picture, in degrees.
+FOV = 40.0
 #: Lights: how far to the right, upwards and towards the eye, in radii of the scene, and how bright.
 LIGHTS = ((-2.5, 4.0, 3.5, 0.75), (4.0, 1.0, 2.0, 0.25))
 
@@ -42,22 +44,35 @@ class Extent:
         radius = float(((np.linalg.norm((positions - middle) / unit, axis=1) + reach / unit).max()) * unit)
         return Extent((float(middle[0]), float(middle[1]), float(middle[2])), radius)
 
-    def eye(self, window: tuple[float, float, float, float], near: float) -> list[float]:
-        """From where the whole ball is in the window."""
+    def window(
+        self, fov: float | None, size: tuple[int, int], near: float, projection: str
+    ) -> tuple[float, float, float, float]:
+        """Left, right, bottom and top of a window with square pixels: `fov` degrees high, or around the whole ball."""
+        columns, rows = size
+        if projection != "orthographic":
+            fov = FOV if fov is None else fov
+            if not 0 < fov < 180:
+                raise ValueError(f"fov: expected an angle between 0 and 180 degrees, not {fov}")
+            top = near * tan(radians(fov) / 2)
+        elif fov is None:
+            top = ROOM * self.radius * max(1.0, rows / columns)
+        else:
+            raise ValueError("fov: an orthographic picture has no field of view, window says how much it shows")
+        right = top * columns / rows
+        return -right, right, -top, top
+
+    def eye(self, window: tuple[float, float, float, float], near: float, projection: str) -> list[float]:
+        """From where the whole ball is in the window, or, where rays are parallel, beyond it."""
         towards = np.asarray(TOWARDS_EYE) / np.linalg.norm(TOWARDS_EYE)
-        narrowest = min(abs(edge) for edge in window)
-        # A window with its middle elsewhere has no such place: then it is as if the narrowest edge were as far as the others.
-        angle = atan((narrowest or near) / near)
-        return [float(x) for x in np.asarray(self.middle) + towards * (ROOM * self.radius / sin(angle))]
+        if projection == "orthographic":
+            away = near + ROOM * self.radius
+        else:
+            narrowest = min(abs(edge) for edge in window)
+            # A window with its middle elsewhere has no such place: then it is as if the narrowest edge were as far as the others.
+            away = ROOM * self.radius / sin(atan((narrowest or near) / near))
+        return [float(x) for x in np.asarray(self.middle) + towards * away]
 
     def lights(self, axes: Table) -> tuple[Table, Table]:
         """Positions and colours of a bright light and a dim one, by the axes of the picture."""
         places = np.asarray(LIGHTS)
         return self.middle + places[:, :3] * self.radius @ axes, np.repeat(places[:, 3:], 3, axis=1)
-
-
-def window_of(fov: float, size: tuple[int, int], near: float) -> tuple[float, float, float, float]:
-    """Left, right, bottom and top of a window that is `fov` degrees high and has square pixels."""
-    top = near * tan(radians(fov) / 2)
-    right = top * size[0] / size[1]
-    return -right, right, -top, top

@@ -33,14 +33,21 @@ def renderer(device: str) -> _native.Renderer:
     return opened
 
 
-def settings_of(scene: Scene | None, convention: str | None, max_depth: int, samples: int | None) -> _native.Settings:
+def settings_of(
+    scene: Scene | None, convention: str | None, max_depth: int, samples: int | None, pattern: str, filter: str
+) -> _native.Settings:
     """The settings; what is None is as the scene has it."""
     if convention is None:
         convention = scene.convention if scene else "classic"
     if samples is None:
         samples = scene.samples if scene else 1
     depth = integer("max_depth", max_depth, 0, 1000)
-    return _native.Settings(convention, depth, integer("samples", samples, 1, 256))
+    return _native.Settings(convention, depth, integer("samples", samples, 1, 256), pattern, filter)
+
+
+def projected(scene: Scene, projection: str | None) -> _native.Scene:
+    """The scene in another projection than its own, if there is one."""
+    return scene._packed if projection is None else scene._packed.projected(projection)
 
 
 def render(
@@ -53,6 +60,9 @@ def render(
     convention: str | None = None,
     max_depth: int = 3,
     samples: int | None = None,
+    pattern: str = "grid",
+    filter: str = "box",
+    projection: str | None = None,
     verify: str | int | None = None,
     **arrays: Any,
 ) -> NDArray[np.uint8]:
@@ -63,16 +73,22 @@ def render(
     device: auto, gpu, cpu, an index of `devices()`, or a part of a name. auto is the best device, or the CPU reference
     with a warning where there is none.
     precision: auto, fast, robust, double, or certified for the reference's picture in every pixel.
-    convention: classic or exact. samples: a pixel, a square number. max_depth: greatest number of reflections.
+    convention: classic or exact. max_depth: greatest number of reflections.
+    samples: a pixel, up to 256. pattern: how they are placed, on a regular grid of a square number of them, or on a
+    fibonacci lattice of any number. filter: how a lattice is spread over the pixel and around it; box, tent or gaussian.
+    projection: perspective, or orthographic, which shows the window's own width and height of the world; None is as the
+    scene has it.
     verify: how many pixels the CPU reference calculates again: a number, all, or none.
 
     Other threads run while it renders.
     """
     given: dict[str, Any] = {name: value for name, value in (("radii", radii), ("colors", colors)) if value is not None}
     if not isinstance(scene, Scene):
+        if projection is not None:
+            given["projection"] = projection
         scene = Scene.from_arrays(scene, **given, **arrays)
     elif given or arrays:
         raise TypeError(f"{next(iter({**given, **arrays}))}: a Scene has all of this already")
-    settings = settings_of(scene, convention, max_depth, samples)
+    settings = settings_of(scene, convention, max_depth, samples, pattern, filter)
     count = None if verify is None else str(verify)
-    return renderer(str(device)).render(scene._packed, settings, precision, count)
+    return renderer(str(device)).render(projected(scene, projection), settings, precision, count)

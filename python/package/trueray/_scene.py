@@ -9,7 +9,7 @@ import numpy as np
 
 from . import _native
 from ._arguments import color, column, integer, lengths, number, numbered, semi_axes, shades, triples
-from ._framing import NEAR, Extent, window_of
+from ._framing import NEAR, Extent
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -70,9 +70,10 @@ class Scene:
         eye: ArrayLike | None = None,
         look_at: ArrayLike | None = None,
         up: ArrayLike = (0.0, 1.0, 0.0),
-        fov: float = 40.0,
+        fov: float | None = None,
         near: float | None = None,
         window: ArrayLike | None = None,
+        projection: str = "perspective",
     ) -> Scene:
         """The scene of N spheres or ellipsoids.
 
@@ -88,10 +89,12 @@ class Scene:
         ambient_light, background: (3,) or a grey.
         size: columns and rows of the picture.
         eye, look_at, up: where the eye is, where it looks, what is upwards. Without them all spheres are in the picture.
-        fov: angle between lower and upper edge, in degrees. `window` = (left, right, bottom, top) on the image plane
-        replaces it.
+        fov: angle between lower and upper edge, in degrees; 40 by default. `window` = (left, right, bottom, top) on the
+        image plane replaces it.
         near: distance of the image plane; what lies nearer is not seen. By default 1 with a window, next to nothing
         without.
+        projection: perspective, or orthographic: rays are parallel, so there is no `fov`, and the window has the width and
+        the height of what it shows; without one all spheres are in it.
         """
         centers = triples("positions", lengths("positions", positions))
         count = len(centers)
@@ -102,18 +105,16 @@ class Scene:
         extent = Extent.of(centers, axes)
         if near is None:
             near = 1.0 if window is not None else NEAR * extent.radius
-        near, fov = number("near", near), number("fov", fov)
+        near = number("near", near)
         if near <= 0:
             raise ValueError(f"near: expected a number greater than 0, not {near}")
-        if not 0 < fov < 180:
-            raise ValueError(f"fov: expected an angle between 0 and 180 degrees, not {fov}")
-        left, right, bottom, top = (
-            window_of(fov, (columns, rows), near) if window is None else numbered("window", window, 4)
-        )
+        usual = extent.window(None if fov is None else number("fov", fov), (columns, rows), near, projection)
+        left, right, bottom, top = usual if window is None else numbered("window", window, 4)
         view = _native.View(
-            extent.eye((left, right, bottom, top), near) if eye is None else numbered("eye", eye, 3),
+            extent.eye((left, right, bottom, top), near, projection) if eye is None else numbered("eye", eye, 3),
             list(extent.middle) if look_at is None else numbered("look_at", look_at, 3),
             numbered("up", up, 3),
+            projection,
         )
         if lights is None:
             places, glow = extent.lights(np.asarray(view.axes))
@@ -148,11 +149,19 @@ class Scene:
         return cls._of(packed, "exact", 4)
 
     def seen_from(
-        self, eye: ArrayLike, look_at: ArrayLike | None = None, up: ArrayLike = (0.0, 1.0, 0.0)
+        self,
+        eye: ArrayLike,
+        look_at: ArrayLike | None = None,
+        up: ArrayLike = (0.0, 1.0, 0.0),
+        projection: str | None = None,
     ) -> Scene:
-        """The same scene from another eye, which without `look_at` looks along −z; spheres are shared."""
+        """The same scene from another eye, which without `look_at` looks along −z; spheres are shared.
+
+        `projection` is that of the scene, if it is None.
+        """
         target = None if look_at is None else numbered("look_at", look_at, 3)
-        view = _native.View(numbered("eye", eye, 3), target, numbered("up", up, 3))
+        projection = self.projection if projection is None else projection
+        view = _native.View(numbered("eye", eye, 3), target, numbered("up", up, 3), projection)
         return self._of(self._packed.seen_from(view), self.convention, self.samples)
 
     @property
@@ -166,12 +175,17 @@ class Scene:
         x, y, z = self._packed.eye
         return x, y, z
 
+    @property
+    def projection(self) -> str:
+        """perspective or orthographic."""
+        return self._packed.projection
+
     def __len__(self) -> int:
         """How many spheres there are."""
         return self._packed.spheres
 
     def text(self) -> str:
-        """The scene in trueray's scene format, which has no word for the eye: that is `--eye` of the command line."""
+        """The scene in trueray's scene format, which has no words for eye and projection: those are the command line's."""
         return self._packed.text()
 
     def __repr__(self) -> str:

@@ -41,6 +41,7 @@ impl<'g> SessionRenderer<'g> {
         (self.pass, self.measurement, self.problem) = (None, None, None);
         let (version, view) = self.session.view();
         let settings = Settings { pattern: Pattern::ONE, ..view.settings() };
+        context.light(&settings.view);
         let size = fitted(view.size(context.scene), context.pixels);
         let mut part = largest(context.scene, &settings, REDUCED_SPHERES);
         let Plan { effects, selection, problem } = Plan::of((&mut part, None), &settings, &view, self.gpu);
