@@ -15,6 +15,7 @@ mod causes;
 mod certified;
 mod claims;
 mod cli;
+mod color_bar;
 mod compare;
 mod conform;
 mod coverage;
