@@ -9,6 +9,7 @@ use glam::DVec3;
 use super::color_bar::in_words;
 use super::failure::{Failure, USAGE};
 use super::named::format_or_refusal;
+use crate::certificate::Bits;
 use crate::color_bar::ColorBar;
 use crate::film::{
     Container, Format, LinearFormat, LinearPicture, MOST_LINEAR_PIXELS, OutputError, PictureWriter, Target,
@@ -105,6 +106,24 @@ impl Coding {
     pub(super) fn levels(self) -> Option<Format> {
         match self {
             Self::Levels(format) => Some(format),
+            Self::Linear(_) => None,
+        }
+    }
+
+    /// Whether the file has levels, and no numbers that are none.
+    pub(super) fn has_levels(self) -> bool {
+        let is_png = |format: LinearFormat| matches!(format.container, Container::Png8 | Container::Png16);
+        match self {
+            Self::Levels(_) => true,
+            Self::Linear(format) => is_png(format),
+        }
+    }
+
+    /// The bits of a level, where the file has nothing but levels of red, green and blue.
+    pub(super) fn hash_bits(self) -> Option<Bits> {
+        match self {
+            Self::Levels(_) => Some(Bits::Eight),
+            Self::Linear(LinearFormat { container: Container::Png16, alpha: false }) => Some(Bits::Sixteen),
             Self::Linear(_) => None,
         }
     }

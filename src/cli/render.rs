@@ -275,7 +275,7 @@ fn render_one(
     coding.check_size(area.size())?;
     let viewed = scene.viewed(settings).within(area)?;
     let effects = args.picture.renderable_effects(&viewed)?;
-    let selection = args.device.selection(gpu, &viewed, &effects);
+    let selection = args.device.selection(gpu, &viewed, &effects).with_colors(coding.is_linear());
     if args.explain || args.verbose {
         explain(&loaded.name, &effects, &selection, choice.as_ref(), gpu);
     }
@@ -297,7 +297,7 @@ fn render_one(
         Some(choice) => Renderer::InPart(Engine::verified(backend, viewed, &effects, &options, verify)?, choice),
     };
     let mut certificate =
-        CertificateFile::new(args.certificate.as_deref(), scene);
+        CertificateFile::new(args.certificate.as_deref(), scene, coding.hash_bits(), settings.quantize);
     // The renderer has what it needs: the spheres go before paths and pixels take memory.
     let ((width, height), spheres, lights) = (area.size(), scene.spheres.len(), scene.lights.len());
     drop(loaded.scene);
@@ -323,7 +323,7 @@ fn render_one(
             let start = Instant::now();
             let written = writer.write(band.rgb, band.linear)?;
             write_time += start.elapsed();
-            certificate.add(band.rgb);
+            certificate.add(band.rgb, band.linear);
             beside.add(band.rgb, &written);
             let rows = band.rgb.len() / (width as usize * 3);
             progress.set((f64::from(band.first) + rows as f64) / f64::from(height));
@@ -454,14 +454,15 @@ fn coding_of(args: &Args, target: &Target) -> Result<Coding, Failure> {
     };
     let coding = args.linear.coding(format?)?;
     let is_certified = args.device.precision == Request::Certified;
+    let all = "PFM, EXR, --bits 16 and --alpha";
     let refused = [
-        (is_certified, "--precision certified, which is of 8-bit levels"),
-        (args.certificate.is_some(), "--certificate, which is of 8-bit levels"),
-        (args.sampling.is_given(), "--foveate or --sparse"),
-        (args.part.is_given(), "--crop, --tile or --resume"),
+        (is_certified && !coding.has_levels(), "PFM and EXR", "--precision certified, which is of levels"),
+        (args.certificate.is_some() && coding.hash_bits().is_none(), "PFM, EXR and --alpha", "--certificate"),
+        (args.sampling.is_given() && coding.is_linear(), all, "--foveate or --sparse"),
+        (args.part.is_given() && coding.is_linear(), all, "--crop, --tile or --resume"),
     ];
-    match refused.into_iter().find(|(is_given, _)| coding.is_linear() && *is_given) {
-        Some((_, what)) => Err(Failure::new(USAGE, format!("PFM, EXR, --bits 16 and --alpha do not go with {what}"))),
+    match refused.into_iter().find(|(is_refused, ..)| *is_refused) {
+        Some((_, what, other)) => Err(Failure::new(USAGE, format!("{what} do not go with {other}"))),
         None => Ok(coding),
     }
 }

@@ -19,6 +19,7 @@ mod color_bar;
 mod compare;
 mod conform;
 mod coverage;
+mod deep;
 mod documents;
 mod doubts;
 mod drivers;

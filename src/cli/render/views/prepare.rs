@@ -137,7 +137,7 @@ impl<'a> Preparer<'a> {
         }
         let viewed = scene.viewed_again(&settings, &source.kept);
         let effects = args.picture.renderable_effects(&viewed)?;
-        let selection = args.device.selection(gpu, &viewed, &effects);
+        let selection = args.device.selection(gpu, &viewed, &effects).with_colors(coding.is_linear());
         if (args.explain || args.verbose) && self.explained.as_ref() != Some(&effects) {
             explain(&format!("{name}: {}", frame_name(number)), &effects, &selection, None, gpu);
             self.explained = Some(effects.clone());
