@@ -35,6 +35,7 @@ use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::threads::at_once;
 use crate::verify::Verify;
+use crate::viewed::ViewedScene;
 use crate::words::{count, visible};
 
 /// Arguments of `trueray render`.
@@ -289,13 +290,8 @@ fn render_one(
         return Ok(None);
     }
 
-    let options = args.options(coding);
-    let verify = args.verify.unwrap_or_else(|| Verify::usual(scene));
     let mut beside = Beside::new(&args.aov, args.show, &viewed, &effects, backend)?;
-    let mut renderer = match choice {
-        None => Renderer::Whole(Engine::verified(backend, viewed, &effects, &options, verify)?),
-        Some(choice) => Renderer::InPart(Engine::verified(backend, viewed, &effects, &options, verify)?, choice),
-    };
+    let mut renderer = Renderer::new(args, choice, backend, viewed, &effects, coding)?;
     let mut certificate =
         CertificateFile::new(args.certificate.as_deref(), scene, coding.hash_bits(), settings.quantize);
     // The renderer has what it needs: the spheres go before paths and pixels take memory.
@@ -388,6 +384,24 @@ fn tell(args: &Args, stats: &Stats) {
 enum Renderer<'a> {
     Whole(Engine<'a>),
     InPart(Engine<'a, Pixels>, Choice),
+}
+
+impl<'a> Renderer<'a> {
+    fn new(
+        args: &Args,
+        choice: Option<Choice>,
+        backend: Backend<'a>,
+        viewed: ViewedScene,
+        effects: &Effects,
+        coding: Coding,
+    ) -> Result<Self, Failure> {
+        let options = args.options(coding);
+        let verify = args.verify.unwrap_or_else(|| Verify::usual(viewed.scene()));
+        Ok(match choice {
+            None => Self::Whole(Engine::verified(backend, viewed, effects, &options, verify)?),
+            Some(choice) => Self::InPart(Engine::verified(backend, viewed, effects, &options, verify)?, choice),
+        })
+    }
 }
 
 /// What an engine has noted of a picture.
