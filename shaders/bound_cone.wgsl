@@ -387,12 +387,17 @@ fn note_reflected(throughput: real) {
     bound_weight = throughput;
 }
 
-// Whether all colours as near to this one as it is known have the same levels; OTHERS is the unit roundoff of the reference, as a part of
-// this one's.
+// Whether all colours as near to this one as it is known have the same levels, with LINEAR also those of 16 bits; OTHERS is the unit
+// roundoff of the reference, as a part of this one's. A product of constants is the reference's own where the kernel has `f64`, as it
+// has with LINEAR; else the host knows its levels.
 fn has_sure_levels(color: vec3r) -> bool {
     let error = (bound_color + ROUNDOFF * TERM * largest(abs(color))) * (real(1.0) + OTHERS) + ROUNDOFF * real(4.0);
     let low = levels(color - error);
-    return (bound_sizes < real(0.0)) | ((low == levels(color + error)) & (low < 0x1000000u));
+    var is_sure = (low == levels(color + error)) & (low < 0x1000000u);
+    if LINEAR {
+        is_sure &= all(deep_levels(color - error) == deep_levels(color + error));
+    }
+    return (bound_sizes < real(0.0)) | is_sure;
 }
 
 // The levels of a colour that is a product of constants; else those that it has.

@@ -1,5 +1,5 @@
 // Several samples a pixel, or colours that are wanted themselves: results are colours, of which the pixel is the mean.
-// needs: counters, effects, real, slots, trace
+// needs: bound, counters, effects, real, slots, trace
 // host: STATUS_CUT, STATUS_HIT, STATUS_UNSURE
 
 // With the status, as a number.
@@ -13,14 +13,15 @@ fn keep_status(slot: u32, hits: bool) {
 }
 
 fn finish(slot: u32, color: vec3r) {
-    var status = real(dispatch_bits()) + select(real(0.0), real(STATUS_CUT), is_cut);
+    var status = dispatch_bits() | select(0u, STATUS_CUT, is_cut);
+    if TANGENTS | LINEAR {
+        status |= u32(colors[slot].w);
+    }
     if CERTIFIED {
         // Nobody knows how far the mean of several is off.
-        status += real(STATUS_UNSURE);
-    } else if TANGENTS | LINEAR {
-        status += colors[slot].w;
+        status |= select(STATUS_UNSURE, 0u, SAMPLES == 1u && has_sure_levels(color) && !is_unsure);
     }
-    colors[slot] = vec4r(color, status);
+    colors[slot] = vec4r(color, real(status));
 }
 
 fn trace_pixel(pixel: vec2<u32>, first_slot: u32) {

@@ -8,3 +8,9 @@ fn levels(color: vec3r) -> u32 {
     let status = select(STATUS_NOT_FINITE, 0u, finite);
     return level.x | (level.y << 8u) | (level.z << 16u) | (status << 24u);
 }
+
+// The same rule with 16 bits: levels16 in src/settings.rs.
+fn deep_levels(color: vec3r) -> vec3<u32> {
+    let scale = params.quantize_scale + real(65280.0);
+    return vec3<u32>(scale * clamp(color, vec3r(), vec3r(real(1.0))) + params.quantize_bias);
+}

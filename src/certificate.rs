@@ -70,8 +70,18 @@ impl SceneHash {
 pub struct PictureHash {
     width: u32,
     height: u32,
-    /// Of its P6 file, whatever format it is stored in.
+    /// Of a level.
+    bits: u8,
+    /// Of its P6 file, of 8 or 16 bits, whatever format it is stored in.
     sha256: String,
+}
+
+/// The bits of a level.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say all")]
+pub enum Bits {
+    Eight = 8,
+    Sixteen = 16,
 }
 
 impl PictureHash {
@@ -85,17 +95,24 @@ impl PictureHash {
 #[derive(Debug, Clone)]
 pub struct PictureHasher {
     size: (u32, u32),
+    bits: Bits,
     sha256: Sha256,
 }
 
 impl PictureHasher {
     /// For a picture of this width and height, none of whose rows is there yet.
-    pub fn new(width: u32, height: u32) -> Self {
-        let sha256 = Sha256::new_with_prefix(format!("P6\n{width} {height}\n255\n"));
-        Self { size: (width, height), sha256 }
+    pub fn new(width: u32, height: u32, bits: Bits) -> Self {
+        let greatest = (1_u32 << bits as u32) - 1;
+        let sha256 = Sha256::new_with_prefix(format!("P6\n{width} {height}\n{greatest}\n"));
+        Self { size: (width, height), bits, sha256 }
     }
 
-    /// Adds rows, 3 bytes a pixel.
+    /// Adds a pixel with levels of 16 bits.
+    pub fn add_deep(&mut self, levels: [u16; 3]) {
+        self.sha256.update(levels.map(u16::to_be_bytes).as_flattened());
+    }
+
+    /// Adds rows with levels of 8 bits, 3 bytes a pixel.
     pub fn add(&mut self, rgb: &[u8]) {
         self.sha256.update(rgb);
     }
@@ -103,7 +120,7 @@ impl PictureHasher {
     /// The hash of all of them.
     pub fn finish(self) -> PictureHash {
         let (width, height) = self.size;
-        PictureHash { width, height, sha256: hex(self.sha256.finalize()) }
+        PictureHash { width, height, bits: self.bits as u8, sha256: hex(self.sha256.finalize()) }
     }
 }
 
@@ -182,19 +199,22 @@ mod tests {
 
     fn subject(settings: &Settings, level: u8) -> Subject {
         let scene = Scene::new(Window::default(), 1, 1);
-        let mut picture = PictureHasher::new(1, 1);
+        let mut picture = PictureHasher::new(1, 1, Bits::Eight);
         picture.add(&[level; 3]);
         Subject::new(SceneHash::of(&scene), settings, &Effects::of(&scene.viewed(settings)), picture.finish())
     }
 
     #[test]
     fn the_hash_of_a_picture_is_that_of_its_file() {
-        let mut hasher = PictureHasher::new(2, 1);
+        let mut hasher = PictureHasher::new(2, 1, Bits::Eight);
         hasher.add(&[1, 2, 3]);
         hasher.add(&[4, 5, 6]);
         // sha256sum says so.
         let expected = hex(Sha256::digest(b"P6\n2 1\n255\n\x01\x02\x03\x04\x05\x06"));
         assert_eq!(hasher.finish().sha256, expected);
+        let mut hasher = PictureHasher::new(1, 1, Bits::Sixteen);
+        hasher.add_deep([1, 0x0203, 0xffff]);
+        assert_eq!(hasher.finish().sha256, hex(Sha256::digest(b"P6\n1 1\n65535\n\x00\x01\x02\x03\xff\xff")));
         assert_eq!(hex([0, 10, 255]), "000aff");
     }
 

@@ -250,7 +250,8 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// Likewise, with the colours of the same pixels before they are quantised.
+    /// Likewise, with the colours of the same pixels before they are quantised. Of a certified picture the levels of 16 bits that these
+    /// colours have are the reference's, too.
     ///
     /// # Errors
     ///
@@ -288,6 +289,11 @@ impl<'a, O: Output> Engine<'a, O> {
     ) -> Result<Self, gpu::Error> {
         let _span = tracing::info_span!("prepare").entered();
         let start = Instant::now();
+        // Colours in `f32` have no levels of 16 bits.
+        let backend = match backend {
+            Backend::Certified(gpu, _) if options.linear => Backend::Certified(gpu, Tier::Double),
+            backend => backend,
+        };
         let (gpu, tier) = match backend {
             Backend::Device(gpu, tier) => (gpu, tier),
             Backend::Certified(gpu, tier) if has_bound(gpu, tier, viewed.settings()) => (gpu, tier),
@@ -305,9 +311,6 @@ impl<'a, O: Output> Engine<'a, O> {
             }
         };
         let certified = matches!(backend, Backend::Certified(..));
-        if certified && options.linear {
-            return Err(Misuse::Picture("certified pictures are levels: no bound is kept for colours".into()).into());
-        }
         let options = &Options { certified, ..*options };
         let (renderer, mut lists) = if verify == Verify::Nothing && !certified {
             (GpuRenderer::with(gpu, &viewed, effects, tier, options)?, None)

@@ -62,6 +62,8 @@ pub mod certificate;
 #[doc(hidden)]
 pub mod cli;
 #[doc(hidden)]
+pub mod color_bar;
+#[doc(hidden)]
 pub mod compare;
 #[doc(hidden)]
 pub mod conform;

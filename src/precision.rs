@@ -434,4 +434,14 @@ impl Selection {
         let covered = certified || excess(tier).is_none();
         Self { tier, certified, reason, demand, covered }
     }
+
+    /// The same for a picture of which colours are wanted: where it is certified, `double` begins, since `f32` tells no levels of 16 bits.
+    #[must_use]
+    pub fn with_colors(self, are_wanted: bool) -> Self {
+        if !are_wanted || !self.certified {
+            return self;
+        }
+        let reason = "asked for; begun by double: f32 has too few bits for levels of 16".into();
+        Self { tier: Tier::Double, reason, ..self }
+    }
 }

@@ -30,13 +30,13 @@ impl<'a> Beside<'a> {
         Ok(Self { size, aov: aov.of(viewed, effects, backend)?, shown: shows.then(Vec::new) })
     }
 
-    /// Takes the next rows, 3 bytes a pixel.
-    pub(super) fn add(&mut self, rgb: &[u8]) {
+    /// Takes the next rows, 3 bytes a pixel: as they are rendered, and as the file has them.
+    pub(super) fn add(&mut self, rgb: &[u8], written: &[u8]) {
         if let Some(aov) = &mut self.aov {
             aov.add(rgb);
         }
         if let Some(shown) = &mut self.shown {
-            shown.extend_from_slice(rgb);
+            shown.extend_from_slice(written);
         }
     }
 

@@ -10,7 +10,7 @@ use super::color;
 use super::failure::{Failure, SCENE, USAGE};
 use super::output::{err, errln};
 use super::particles::Reading;
-use crate::import::{Format, Import, Lamps};
+use crate::import::{ColorScale, Format, Import, Lamps};
 use crate::scene::{Parsed, Scene, foreign_kind, parse};
 use crate::words::visible;
 
@@ -77,6 +77,7 @@ pub(super) struct Input {
     pub parse_time: Duration,
     path: Option<PathBuf>,
     lamps: Option<Lamps>,
+    color_scale: Option<ColorScale>,
     notes: Vec<String>,
 }
 
@@ -87,7 +88,7 @@ impl Input {
         let start = Instant::now();
         let opened = Opened::open(path)?;
         let name = opened.name.clone();
-        let (parsed, lamps, notes) = if let Some(format) = opened.format {
+        let (parsed, lamps, color_scale, notes) = if let Some(format) = opened.format {
             if reading.options.view.is_parallel() {
                 let help =
                     "help: trueray import writes a scene, whose window may be changed for --projection orthographic";
@@ -97,7 +98,7 @@ impl Input {
                 ));
             }
             let imported = Import::new(&name, format, opened.into_reader(), reading.options.clone()).first();
-            (imported.parsed, imported.lamps, imported.notes)
+            (imported.parsed, imported.lamps, imported.color_scale, imported.notes)
         } else {
             let text = opened.into_text()?;
             if let Some(kind) = foreign_kind(&text) {
@@ -107,10 +108,10 @@ impl Input {
                 let message = "this holds no particles of a known format, to which options such as --radius apply";
                 return Err(Failure::new(USAGE, format!("{}: {message}", visible(&name))));
             }
-            (parse(&name, &text), None, Vec::new())
+            (parse(&name, &text), None, None, Vec::new())
         };
         let path = (path != Path::new("-")).then(|| path.to_owned());
-        Ok(Self { name, parsed, parse_time: start.elapsed(), path, lamps, notes })
+        Ok(Self { name, parsed, parse_time: start.elapsed(), path, lamps, color_scale, notes })
     }
 
     /// Prints errors and warnings and returns the scene, if it can be rendered.
@@ -118,8 +119,8 @@ impl Input {
         self.print_diagnostics(quiet);
         match self.parsed.scene {
             Some(scene) => {
-                let Self { name, parse_time, path, lamps, .. } = self;
-                Ok(Loaded { name, scene, lamps, parse_time, path })
+                let Self { name, parse_time, path, lamps, color_scale, .. } = self;
+                Ok(Loaded { name, scene, lamps, color_scale, parse_time, path })
             }
             None => Err(Failure::new(SCENE, "")),
         }
@@ -156,6 +157,8 @@ pub(super) struct Loaded {
     pub scene: Scene,
     /// The lights of particles, which turn with the eye.
     pub lamps: Option<Lamps>,
+    /// What the colours of particles stand for, where that is numbers.
+    pub color_scale: Option<ColorScale>,
     /// Reading and parsing.
     pub parse_time: Duration,
     path: Option<PathBuf>,

@@ -1,12 +1,16 @@
 //! `--bits`, `--alpha` and the endings of `trueray render` that write colours in place of 8-bit levels.
 
+use std::borrow::Cow;
 use std::path::Path;
 use std::str::FromStr;
 
 use glam::DVec3;
 
+use super::color_bar::in_words;
 use super::failure::{Failure, USAGE};
 use super::named::format_or_refusal;
+use crate::certificate::Bits;
+use crate::color_bar::ColorBar;
 use crate::film::{
     Container, Format, LinearFormat, LinearPicture, MOST_LINEAR_PIXELS, OutputError, PictureWriter, Target,
 };
@@ -106,6 +110,24 @@ impl Coding {
         }
     }
 
+    /// Whether the file has levels, and no numbers that are none.
+    pub(super) fn has_levels(self) -> bool {
+        let is_png = |format: LinearFormat| matches!(format.container, Container::Png8 | Container::Png16);
+        match self {
+            Self::Levels(_) => true,
+            Self::Linear(format) => is_png(format),
+        }
+    }
+
+    /// The bits of a level, where the file has nothing but levels of red, green and blue.
+    pub(super) fn hash_bits(self) -> Option<Bits> {
+        match self {
+            Self::Levels(_) => Some(Bits::Eight),
+            Self::Linear(LinearFormat { container: Container::Png16, alpha: false }) => Some(Bits::Sixteen),
+            Self::Linear(_) => None,
+        }
+    }
+
     /// Whether the renderer is asked for colours.
     pub(super) fn is_linear(self) -> bool {
         self.levels().is_none()
@@ -122,45 +144,66 @@ impl Coding {
 }
 
 /// A picture on its way to its file.
-pub(super) enum Film {
+pub(super) struct Film {
+    file: File,
+    /// What is drawn over it.
+    bar: Option<ColorBar>,
+    width: u32,
+    /// Rows so far.
+    rows: u32,
+}
+
+enum File {
     Levels(PictureWriter),
     Linear(LinearPicture, Target),
 }
 
+/// What the text about a bar is called in a file.
+const BAR_TEXT: &str = "Description";
+
 impl Film {
-    /// Opens the file, which says `note` of itself where there is one.
+    /// Opens the file, which says `note` of itself where there is one, else what `bar` shows.
     pub(super) fn new(
         coding: Coding,
         target: &Target,
         size: (u32, u32),
         note: Option<&str>,
         (quantize, background): (Quantize, DVec3),
+        bar: Option<ColorBar>,
     ) -> Result<Self, OutputError> {
-        match coding {
-            Coding::Levels(format) => PictureWriter::with_note(target, format, size, note).map(Self::Levels),
-            Coding::Linear(format) => {
-                Ok(Self::Linear(LinearPicture::new(format, size, quantize, background), target.clone()))
+        let shown = bar.as_ref().map(|bar| in_words(bar.scale()));
+        let text = shown.as_deref().map(|text| (BAR_TEXT, text));
+        let file = match (coding, note) {
+            (Coding::Levels(format), Some(_)) => File::Levels(PictureWriter::with_note(target, format, size, note)?),
+            (Coding::Levels(format), None) => File::Levels(PictureWriter::with_text(target, format, size, text)?),
+            (Coding::Linear(format), _) => {
+                File::Linear(LinearPicture::new(format, size, quantize, background).with_text(text), target.clone())
             }
-        }
+        };
+        Ok(Self { file, bar, width: size.0, rows: 0 })
     }
 
-    /// Takes the next rows: 3 bytes a pixel, and colours where the engine has them.
-    pub(super) fn write(&mut self, rgb: &[u8], linear: &[Linear]) -> Result<(), OutputError> {
+    /// Takes the next rows: 3 bytes a pixel, and colours where the engine has them. Returns the levels with what is drawn over them.
+    pub(super) fn write<'r>(&mut self, rgb: &'r [u8], linear: &[Linear]) -> Result<Cow<'r, [u8]>, OutputError> {
         let _span = tracing::info_span!("write rows").entered();
-        match self {
-            Self::Levels(writer) => writer.write_rows(rgb),
-            Self::Linear(picture, _) => {
-                picture.add(rgb, linear);
-                Ok(())
-            }
+        let (mut rgb, mut linear) = (Cow::Borrowed(rgb), Cow::Borrowed(linear));
+        let (first, rows) = (self.rows, (rgb.len() / 3) as u32 / self.width);
+        self.rows += rows;
+        if let Some(bar) = self.bar.as_ref().filter(|bar| bar.touches(first, rows)) {
+            bar.draw(first, rgb.to_mut(), linear.to_mut());
         }
+        match &mut self.file {
+            File::Levels(writer) => writer.write_rows(&rgb)?,
+            File::Linear(picture, _) => picture.add(&rgb, &linear),
+        }
+        Ok(rgb)
     }
 
     /// Completes the file.
     pub(super) fn finish(self) -> Result<(), OutputError> {
-        match self {
-            Self::Levels(writer) => writer.finish(),
-            Self::Linear(picture, target) => picture.save(&target),
+        match self.file {
+            File::Levels(writer) => writer.finish(),
+            File::Linear(picture, target) => picture.save(&target),
         }
     }
 }

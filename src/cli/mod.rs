@@ -7,6 +7,7 @@ mod beside;
 mod certificate;
 mod check;
 mod color;
+mod color_bar;
 mod compare;
 mod conform;
 mod devices;

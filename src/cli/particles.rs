@@ -58,6 +58,11 @@ impl Reading {
 }
 
 impl ParticleOptions {
+    /// Where colours come from, where that is said.
+    pub(super) fn coloring(&self) -> Option<&Coloring> {
+        self.color_by.as_ref()
+    }
+
     /// How one frame is read for a picture.
     pub(super) fn one_frame(&self, picture: &PictureOptions) -> Result<Reading, Failure> {
         let mut reading = self.frames(picture.resolution())?;

@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use super::aov::AovOptions;
 use super::beside::Beside;
 use super::certificate::CertificateFile;
+use super::color_bar::ColorBarOptions;
 use super::failure::{DEVICE_LOST, Failure, OK, STOPPED, USAGE};
 use super::files::{check_place, json, save};
 use super::guard::Guard;
@@ -34,6 +35,7 @@ use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::threads::at_once;
 use crate::verify::Verify;
+use crate::viewed::ViewedScene;
 use crate::words::{count, visible};
 
 /// Arguments of `trueray render`.
@@ -46,6 +48,8 @@ pub(super) struct Args {
     picture: PictureOptions,
     #[command(flatten)]
     particles: ParticleOptions,
+    #[command(flatten)]
+    color_bar: ColorBarOptions,
     #[command(flatten)]
     views: views::Options,
     #[command(flatten)]
@@ -117,6 +121,11 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
 }
 
 fn render_all(args: &Args) -> Result<u8, Failure> {
+    let apart = [
+        (args.certificate.is_some(), "--certificate, which is of the picture that it is drawn over"),
+        (args.part.is_given(), "--crop, --tile or --resume, whose files are to be the pixels of the whole picture"),
+    ];
+    args.color_bar.check(args.particles.coloring(), &apart)?;
     if args.views.are_given() {
         return views::run(args);
     }
@@ -267,31 +276,30 @@ fn render_one(
     coding.check_size(area.size())?;
     let viewed = scene.viewed(settings).within(area)?;
     let effects = args.picture.renderable_effects(&viewed)?;
-    let selection = args.device.selection(gpu, &viewed, &effects);
+    let selection = args.device.selection(gpu, &viewed, &effects).with_colors(coding.is_linear());
     if args.explain || args.verbose {
         explain(&loaded.name, &effects, &selection, choice.as_ref(), gpu);
     }
     let backend = Backend::of(gpu, &selection);
+    let levels = (settings.quantize, scene.background);
+    let bar = args.color_bar.bar(&loaded.name, loaded.color_scale.as_ref(), area.size(), levels)?;
+    let color_bar = bar.as_ref().map(|bar| bar.scale().clone());
     let note = |format| args.part.note(scene, area, (settings, &effects), (gpu, &selection), format);
     let note = coding.levels().map_or(Ok(None), note)?;
     if note.as_ref().map_or(Ok(false), |note| note.is_done(&target, args.quiet))? {
         return Ok(None);
     }
 
-    let options = args.options(coding);
-    let verify = args.verify.unwrap_or_else(|| Verify::usual(scene));
     let mut beside = Beside::new(&args.aov, args.show, &viewed, &effects, backend)?;
-    let mut renderer = match choice {
-        None => Renderer::Whole(Engine::verified(backend, viewed, &effects, &options, verify)?),
-        Some(choice) => Renderer::InPart(Engine::verified(backend, viewed, &effects, &options, verify)?, choice),
-    };
-    let mut certificate = CertificateFile::new(args.certificate.as_deref(), scene);
+    let mut renderer = Renderer::new(args, choice, backend, viewed, &effects, coding)?;
+    let mut certificate =
+        CertificateFile::new(args.certificate.as_deref(), scene, coding.hash_bits(), settings.quantize);
     // The renderer has what it needs: the spheres go before paths and pixels take memory.
     let ((width, height), spheres, lights) = (area.size(), scene.spheres.len(), scene.lights.len());
-    let levels = (settings.quantize, scene.background);
     drop(loaded.scene);
 
-    let mut writer = Film::new(coding, &target, (width, height), note.as_ref().map(|note| note.line.as_str()), levels)?;
+    let note = note.as_ref().map(|note| note.line.as_str());
+    let mut writer = Film::new(coding, &target, (width, height), note, levels, bar)?;
     let mut write_time = Duration::ZERO;
     let mut progress = Progress::of_rows(args.progress_style(), &loaded.name, height);
     let mut sampled = None;
@@ -301,18 +309,18 @@ fn render_one(
             let samples = Samples::new((width, height), &density)?;
             let picture = render_partial(engine, backend, &samples, fill, |part| progress.set(part))?;
             let start = Instant::now();
-            writer.write(&picture.rgb, &[])?;
-            beside.add(&picture.rgb);
+            let written = writer.write(&picture.rgb, &[])?;
+            beside.add(&picture.rgb, &written);
             write_time += start.elapsed();
             sampled = Some(Sampled { density, fill, pixels: samples.pixels().len() as u64, fill_ms: picture.fill_ms });
             picture.not_finite
         }
         Renderer::Whole(engine) => render_bands(engine, |band| {
             let start = Instant::now();
-            writer.write(band.rgb, band.linear)?;
+            let written = writer.write(band.rgb, band.linear)?;
             write_time += start.elapsed();
-            certificate.add(band.rgb);
-            beside.add(band.rgb);
+            certificate.add(band.rgb, band.linear);
+            beside.add(band.rgb, &written);
             let rows = band.rgb.len() / (width as usize * 3);
             progress.set((f64::from(band.first) + rows as f64) / f64::from(height));
             Ok::<_, Failure>(())
@@ -346,6 +354,7 @@ fn render_one(
         certified: stages.filter(|_| selection.certified || gpu.is_none()),
         precision: gpu.map(|_| selection),
         sampled,
+        color_bar,
         rays: rays.filter(|_| !args.no_ray_counts),
         not_finite_pixels: not_finite,
         verified,
@@ -375,6 +384,24 @@ fn tell(args: &Args, stats: &Stats) {
 enum Renderer<'a> {
     Whole(Engine<'a>),
     InPart(Engine<'a, Pixels>, Choice),
+}
+
+impl<'a> Renderer<'a> {
+    fn new(
+        args: &Args,
+        choice: Option<Choice>,
+        backend: Backend<'a>,
+        viewed: ViewedScene,
+        effects: &Effects,
+        coding: Coding,
+    ) -> Result<Self, Failure> {
+        let options = args.options(coding);
+        let verify = args.verify.unwrap_or_else(|| Verify::usual(viewed.scene()));
+        Ok(match choice {
+            None => Self::Whole(Engine::verified(backend, viewed, effects, &options, verify)?),
+            Some(choice) => Self::InPart(Engine::verified(backend, viewed, effects, &options, verify)?, choice),
+        })
+    }
 }
 
 /// What an engine has noted of a picture.
@@ -441,14 +468,15 @@ fn coding_of(args: &Args, target: &Target) -> Result<Coding, Failure> {
     };
     let coding = args.linear.coding(format?)?;
     let is_certified = args.device.precision == Request::Certified;
+    let all = "PFM, EXR, --bits 16 and --alpha";
     let refused = [
-        (is_certified, "--precision certified, which is of 8-bit levels"),
-        (args.certificate.is_some(), "--certificate, which is of 8-bit levels"),
-        (args.sampling.is_given(), "--foveate or --sparse"),
-        (args.part.is_given(), "--crop, --tile or --resume"),
+        (is_certified && !coding.has_levels(), "PFM and EXR", "--precision certified, which is of levels"),
+        (args.certificate.is_some() && coding.hash_bits().is_none(), "PFM, EXR and --alpha", "--certificate"),
+        (args.sampling.is_given() && coding.is_linear(), all, "--foveate or --sparse"),
+        (args.part.is_given() && coding.is_linear(), all, "--crop, --tile or --resume"),
     ];
-    match refused.into_iter().find(|(is_given, _)| coding.is_linear() && *is_given) {
-        Some((_, what)) => Err(Failure::new(USAGE, format!("PFM, EXR, --bits 16 and --alpha do not go with {what}"))),
+    match refused.into_iter().find(|(is_refused, ..)| *is_refused) {
+        Some((_, what, other)) => Err(Failure::new(USAGE, format!("{what} do not go with {other}"))),
         None => Ok(coding),
     }
 }

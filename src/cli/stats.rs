@@ -4,8 +4,10 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
+use super::color_bar::in_words;
 use crate::effects::Effects;
 use crate::engine::{Rays, Stages, Times};
+use crate::import::ColorScale;
 use crate::precision::Selection;
 use crate::sampling::{Density, Fill};
 use crate::settings::Settings;
@@ -54,6 +56,9 @@ pub(super) struct Stats {
     /// Absent where every pixel is sampled.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sampled: Option<Sampled>,
+    /// What a colour bar over the picture shows; absent where there is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub color_bar: Option<ColorScale>,
     /// How many pixels are right by which stage; absent where a device's picture is not certified.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub certified: Option<Stages>,
@@ -114,6 +119,9 @@ impl Stats {
             let all = u64::from(self.width) * u64::from(self.height);
             let part = *pixels as f64 * 100.0 / all as f64;
             row("sampled", format!("{pixels} of {all} pixels ({part:.1} %), the others filled: {fill}"));
+        }
+        if let Some(scale) = &self.color_bar {
+            row("drawn over it", in_words(scale));
         }
         if let Some(Rays { primary, shadow, reflection }) = self.rays {
             row("rays", format!("{primary} primary, {shadow} shadow, {reflection} reflection"));

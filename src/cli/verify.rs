@@ -11,11 +11,12 @@ use super::input::Input;
 use super::options::{DeviceOptions, PictureOptions};
 use super::output::{out, outln};
 use super::particles::Reading;
-use crate::certificate::{PictureHasher, SceneHash, Subject};
-use crate::engine::{Backend, Engine, Stages, device_name, render_bands};
-use crate::film::{Leniency, Picture};
+use crate::certificate::{Bits, PictureHash, PictureHasher, SceneHash, Subject};
+use crate::engine::{Backend, Engine, Options, Stages, device_name, render_bands};
+use crate::film::{Encoded, Leniency};
 use crate::gpu::{Choice, Gpu};
 use crate::precision::{Request, Selection};
+use crate::settings::Quantize;
 use crate::words::{count, visible};
 
 /// Arguments of `trueray verify`.
@@ -70,8 +71,8 @@ enum Verdict {
 struct WrongPixel {
     x: u32,
     y: u32,
-    picture: [u8; 3],
-    reference: [u8; 3],
+    picture: [u16; 3],
+    reference: [u16; 3],
 }
 
 /// What `--json` prints where nothing could be verified.
@@ -110,7 +111,7 @@ fn verify(args: &Args) -> Result<u8, Failure> {
         let message = format!("{name} has {width} × {height} pixels, the scene {} × {}", scene.width, scene.height);
         return Err(Failure::new(USAGE, message));
     }
-    let picture = encoded.decode(Leniency::Strict).map_err(unreadable)?.picture;
+    let levels = Levels::of(encoded)?;
 
     let settings = args.options.settings()?;
     let viewed = scene.viewed(&settings);
@@ -120,24 +121,24 @@ fn verify(args: &Args) -> Result<u8, Failure> {
         Some(path) => {
             let refused = |why: String| Failure::new(USAGE, format!("the certificate {}: {why}", path.display()));
             let text = std::fs::read_to_string(path).map_err(|error| refused(error.to_string()))?;
-            let mut hasher = PictureHasher::new(width, height);
-            hasher.add(picture.rgb());
-            let subject = Subject::new(SceneHash::of(scene), &settings, &effects, hasher.finish());
+            let subject = Subject::new(SceneHash::of(scene), &settings, &effects, levels.hash((width, height)));
             subject.mismatch(&text).map_err(refused)?
         }
     };
 
     let options = DeviceOptions { device: args.device.clone(), precision: Request::Certified };
     let gpu = options.open_with(args.json)?;
-    let selection = options.selection(gpu.as_ref(), &viewed, &effects);
-    let mut engine = Engine::new(Backend::of(gpu.as_ref(), &selection), viewed, &effects)?;
-    let (wrong_pixels, first) = wrong(&picture, &mut engine)?;
+    let linear = matches!(levels, Levels::Sixteen(_));
+    let selection = options.selection(gpu.as_ref(), &viewed, &effects).with_colors(linear);
+    let wanted = Options { linear, ..Options::default() };
+    let mut engine = Engine::with(Backend::of(gpu.as_ref(), &selection), viewed, &effects, &wanted)?;
+    let (wrong_pixels, first) = wrong(&levels, settings.quantize, &mut engine)?;
     let is_right = wrong_pixels == 0 && certificate_mismatch.is_none();
     let report = Report {
         verdict: if is_right { Verdict::Right } else { Verdict::Wrong },
         picture: name,
         scene: loaded.name.clone(),
-        pixels: picture.pixel_count(),
+        pixels: u64::from(width) * u64::from(height),
         wrong_pixels,
         first,
         certificate_mismatch,
@@ -156,16 +157,60 @@ fn unreadable(error: impl std::fmt::Display) -> Failure {
     Failure::new(USAGE, error.to_string())
 }
 
-/// How many pixels of `picture` are not what `engine` has, and the first of them.
-fn wrong(picture: &Picture, engine: &mut Engine) -> Result<(u64, Option<WrongPixel>), Failure> {
+/// The levels of a picture, 3 a pixel.
+enum Levels {
+    Eight(Vec<u8>),
+    Sixteen(Vec<u16>),
+}
+
+impl Levels {
+    fn of(encoded: Encoded) -> Result<Self, Failure> {
+        if encoded.is_deep() {
+            return encoded.decode_deep().map(Self::Sixteen).map_err(unreadable);
+        }
+        Ok(Self::Eight(encoded.decode(Leniency::Strict).map_err(unreadable)?.picture.into_rgb()))
+    }
+
+    /// Of pixel `at`, in reading order.
+    fn pixel(&self, at: usize) -> [u16; 3] {
+        match self {
+            Self::Eight(levels) => levels.as_chunks::<3>().0[at].map(u16::from),
+            Self::Sixteen(levels) => levels.as_chunks::<3>().0[at],
+        }
+    }
+
+    fn hash(&self, (width, height): (u32, u32)) -> PictureHash {
+        match self {
+            Self::Eight(levels) => {
+                let mut hasher = PictureHasher::new(width, height, Bits::Eight);
+                hasher.add(levels);
+                hasher.finish()
+            }
+            Self::Sixteen(levels) => {
+                let mut hasher = PictureHasher::new(width, height, Bits::Sixteen);
+                levels.as_chunks::<3>().0.iter().for_each(|&pixel| hasher.add_deep(pixel));
+                hasher.finish()
+            }
+        }
+    }
+}
+
+/// How many pixels of a picture are not what `engine` has, and the first of them.
+fn wrong(levels: &Levels, quantize: Quantize, engine: &mut Engine) -> Result<(u64, Option<WrongPixel>), Failure> {
+    let width = engine.size().0;
     let (mut wrong, mut first) = (0, None);
     render_bands(engine, |band| {
-        for (y, row) in (band.first..).zip(band.rgb.as_chunks::<3>().0.chunks(picture.width() as usize)) {
-            for (x, (&own, &reference)) in (0..).zip(picture.row(y).iter().zip(row)) {
-                if own != reference {
-                    wrong += 1;
-                    first.get_or_insert(WrongPixel { x, y, picture: own, reference });
-                }
+        let start = band.first as usize * width as usize;
+        for (at, &eight) in (start..).zip(band.rgb.as_chunks::<3>().0) {
+            let reference = match band.linear.get(at - start) {
+                Some(pixel) => quantize.levels16(pixel.color),
+                None => eight.map(u16::from),
+            };
+            let picture = levels.pixel(at);
+            if picture != reference {
+                wrong += 1;
+                let [x, y] = [at % width as usize, at / width as usize].map(|at| at as u32);
+                first.get_or_insert(WrongPixel { x, y, picture, reference });
             }
         }
         Ok::<_, Failure>(())

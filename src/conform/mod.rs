@@ -18,7 +18,7 @@ pub use table::{head, line, summary};
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use crate::certificate::{PictureHasher, SceneHash};
+use crate::certificate::{Bits, PictureHasher, SceneHash};
 use crate::compare::{Explanation, UnexplainedPixel};
 use crate::cpu::Reference;
 use crate::effects::Effects;
@@ -252,7 +252,7 @@ impl Subject {
 
     /// What is told of a picture, but for what explains it.
     fn facts(&self, picture: &Picture) -> PictureFacts {
-        let mut hasher = PictureHasher::new(picture.width(), picture.height());
+        let mut hasher = PictureHasher::new(picture.width(), picture.height(), Bits::Eight);
         hasher.add(picture.rgb());
         let differing = picture.pixels().iter().zip(self.expected.pixels()).filter(|(a, b)| a != b).count() as u64;
         PictureFacts {

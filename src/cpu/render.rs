@@ -67,6 +67,11 @@ impl<T: Real> Reference<T> {
         [self.camera.position_error(T::UNIT), self.camera.direction_error(T::UNIT)].map(T::from_f64)
     }
 
+    /// How colours become levels.
+    pub(crate) fn quantize(&self) -> Quantize {
+        self.quantize
+    }
+
     /// Width and height of the picture.
     pub fn size(&self) -> (u32, u32) {
         (self.camera.width(), self.camera.height())

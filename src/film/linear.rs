@@ -43,6 +43,8 @@ pub struct LinearPicture {
     size: (u32, u32),
     quantize: Quantize,
     background: DVec3,
+    /// A keyword and what the file says under it; PFM has no room for it.
+    text: Option<(String, String)>,
     /// Samples of a PNG as the file has them, before compression.
     levels: Vec<u8>,
     /// Numbers of the other files.
@@ -52,7 +54,12 @@ pub struct LinearPicture {
 impl LinearPicture {
     /// A picture without rows so far, before this background.
     pub fn new(format: LinearFormat, size: (u32, u32), quantize: Quantize, background: DVec3) -> Self {
-        Self { format, size, quantize, background, levels: Vec::new(), numbers: Vec::new() }
+        Self { format, size, quantize, background, text: None, levels: Vec::new(), numbers: Vec::new() }
+    }
+
+    /// The same whose file has a text under a keyword.
+    pub(crate) fn with_text(self, text: Option<(&str, &str)>) -> Self {
+        Self { text: text.map(|(keyword, text)| (keyword.into(), text.into())), ..self }
     }
 
     /// Adds rows: the levels of pixels, 3 bytes each, and their colours.
@@ -93,12 +100,13 @@ impl LinearPicture {
     ///
     /// A folder that does not exist, a file or folder without write permission, rows that are missing, or whatever the system says.
     pub fn save(self, target: &Target) -> Result<(), OutputError> {
-        let Self { format: LinearFormat { container, alpha }, size: (width, height), levels, numbers, .. } = self;
+        let Self { format: LinearFormat { container, alpha }, size: (width, height), text, levels, numbers, .. } = self;
+        let text = text.as_ref().map(|(keyword, text)| (keyword.as_str(), text.as_str()));
         let channels = if alpha { 4 } else { 3 };
         let color = if alpha { ColorType::Rgba } else { ColorType::Rgb };
         let file = match container {
-            Container::Png8 => encode_png_of((width, height), (color, BitDepth::Eight), &levels),
-            Container::Png16 => encode_png_of((width, height), (color, BitDepth::Sixteen), &levels),
+            Container::Png8 => encode_png_of((width, height), (color, BitDepth::Eight), text, &levels),
+            Container::Png16 => encode_png_of((width, height), (color, BitDepth::Sixteen), text, &levels),
             Container::Pfm => Ok(encode_pfm(width, height, channels, &numbers)),
             Container::Exr => {
                 let channel = |(at, name): (usize, &&str)| {
@@ -106,7 +114,7 @@ impl LinearPicture {
                     ((*name).to_owned(), values)
                 };
                 let named = ["R", "G", "B", "A"][..channels].iter().enumerate().map(channel).collect();
-                encode_exr(width, height, named, None).map_err(io::Error::other)
+                encode_exr(width, height, named, text.map(|(_, text)| text)).map_err(io::Error::other)
             }
         };
         let file = file.map_err(|source| target.error("write", source))?;

@@ -58,7 +58,23 @@ pub(super) fn size(bytes: &[u8]) -> Result<(u32, u32), Problem> {
     Ok((width, height))
 }
 
+/// Whether the header says that a channel has 16 bits.
+pub(super) fn is_deep(bytes: &[u8]) -> bool {
+    bytes.get(24) == Some(&16)
+}
+
+/// Levels of 16 bits: red, green and blue of each pixel.
+pub(super) fn decode_deep(bytes: &[u8]) -> Result<Vec<u16>, Problem> {
+    let mut levels = Vec::new();
+    decode_into(bytes, Leniency::Strict, Some(&mut levels)).map(|_| levels)
+}
+
 pub(super) fn decode(bytes: &[u8], leniency: Leniency) -> Result<Reading, Problem> {
+    decode_into(bytes, leniency, None)
+}
+
+/// With levels of 16 bits in `deep`, where they are wanted and there may be no others.
+fn decode_into(bytes: &[u8], leniency: Leniency, deep: Option<&mut Vec<u16>>) -> Result<Reading, Problem> {
     let (width, height) = size(bytes)?;
     sample_count(width, height).map_err(damaged)?;
     let chunks = Chunks::of(bytes);
@@ -71,7 +87,7 @@ pub(super) fn decode(bytes: &[u8], leniency: Leniency) -> Result<Reading, Proble
         &repaired
     };
     // A decoder's panic is a damaged file like any other.
-    let decoded = panics::caught(|| pixels(whole, width, height, leniency));
+    let decoded = panics::caught(|| pixels(whole, width, height, leniency, deep));
     let decoded =
         decoded.map_err(|why| damaged(format!("the decoder cannot make sense of it ({why})"))).and_then(|read| read);
     let (rgb, mut warnings) = decoded.map_err(|problem| match problem.kind() {
@@ -136,7 +152,13 @@ fn damaged(why: impl Display) -> Problem {
 }
 
 /// All samples in 8-bit RGB, and what was lost on the way.
-fn pixels(bytes: &[u8], width: u32, height: u32, leniency: Leniency) -> Result<(Vec<u8>, Vec<Warning>), Problem> {
+fn pixels(
+    bytes: &[u8],
+    width: u32,
+    height: u32,
+    leniency: Leniency,
+    deep: Option<&mut Vec<u16>>,
+) -> Result<(Vec<u8>, Vec<Warning>), Problem> {
     let row_bytes = width as usize * 8; // at most 4 channels of 2 bytes
     let limits = png::Limits { bytes: BESIDE_PIXELS.saturating_add(row_bytes) };
     let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), limits);
@@ -144,7 +166,7 @@ fn pixels(bytes: &[u8], width: u32, height: u32, leniency: Leniency) -> Result<(
     decoder.set_ignore_text_chunk(true);
     decoder.set_ignore_iccp_chunk(true);
     let mut reader = decoder.read_info().map_err(damaged)?;
-    let mut rows = Rows::of(&reader, width, leniency)?;
+    let mut rows = Rows::of(&reader, width, leniency, deep)?;
     let samples = width as usize * height as usize * 3;
     let out_of_memory = || Problem::fatal(format!("there is no memory for {width}x{height} pixels"));
     rows.rgb.try_reserve_exact(samples).map_err(|_| out_of_memory())?;
@@ -174,12 +196,14 @@ fn pixels(bytes: &[u8], width: u32, height: u32, leniency: Leniency) -> Result<(
 }
 
 /// Rows of a file on their way to RGB.
-struct Rows {
+struct Rows<'d> {
     kind: Kind,
     depth: usize,
     width: usize,
     leniency: Leniency,
     rgb: Vec<u8>,
+    /// Levels of 16 bits, where they are wanted.
+    deep: Option<&'d mut Vec<u16>>,
     warnings: Vec<Warning>,
 }
 
@@ -200,8 +224,13 @@ enum Kind {
     Rgba,
 }
 
-impl Rows {
-    fn of(reader: &Reader<Cursor<&[u8]>>, width: u32, leniency: Leniency) -> Result<Self, Problem> {
+impl<'d> Rows<'d> {
+    fn of(
+        reader: &Reader<Cursor<&[u8]>>,
+        width: u32,
+        leniency: Leniency,
+        deep: Option<&'d mut Vec<u16>>,
+    ) -> Result<Self, Problem> {
         let info = reader.info();
         let depth = info.bit_depth as usize;
         // The decoder keeps a declared colour in as many bytes as a sample takes.
@@ -221,20 +250,28 @@ impl Rows {
             ColorType::Rgba => Kind::Rgba,
         };
         let mut warnings = Vec::new();
-        if depth == 16 {
+        if deep.is_some() {
+            if depth != 16 || !matches!(kind, Kind::Rgb { transparent: None }) {
+                let message = "the PNG has another kind of pixels than opaque ones with 16 bits of red, green and blue";
+                return Err(Problem::mendable(message).of_kind(ProblemKind::Unsupported));
+            }
+        } else if depth == 16 {
             if leniency == Leniency::Strict {
                 let message = "the PNG has 16 bits a channel; pictures here have 8";
                 return Err(Problem::mendable(message).of_kind(ProblemKind::Unsupported));
             }
             warnings.push(Warning::Scaled { maximum: 65535 });
         }
-        Ok(Self { kind, depth, width: width as usize, leniency, rgb: Vec::new(), warnings })
+        Ok(Self { kind, depth, width: width as usize, leniency, rgb: Vec::new(), deep, warnings })
     }
 
     fn add(&mut self, row: &[u8]) -> Result<(), Problem> {
         if matches!((&self.kind, self.depth), (Kind::Rgb { transparent: None }, 8)) {
             self.rgb.extend_from_slice(row);
             return Ok(());
+        }
+        if let Some(deep) = &mut self.deep {
+            deep.extend(row.as_chunks().0.iter().map(|&pair| u16::from_be_bytes(pair)));
         }
         for x in 0..self.width {
             let (color, opaque) = self.pixel(row, x)?;

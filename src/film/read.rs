@@ -71,6 +71,19 @@ impl Encoded {
         size.map_err(|problem| ReadError { path: self.path.clone(), problem })
     }
 
+    /// Whether it is a PNG with 16 bits a channel.
+    pub(crate) fn is_deep(&self) -> bool {
+        self.bytes.starts_with(png::MAGIC) && png::is_deep(&self.bytes)
+    }
+
+    /// The levels of such a file without alpha: 3 a pixel.
+    ///
+    /// # Errors
+    /// Contents that break the rules of their format, or are something else.
+    pub(crate) fn decode_deep(self) -> Result<Vec<u16>, ReadError> {
+        png::decode_deep(&self.bytes).map_err(|problem| ReadError { path: self.path, problem })
+    }
+
     /// The picture; see [`read_picture`].
     ///
     /// # Errors

@@ -417,16 +417,21 @@ impl Encoder {
 /// # Errors
 /// More or fewer samples than the picture has.
 pub fn encode_png(width: u32, height: u32, rgb: &[u8]) -> io::Result<Vec<u8>> {
-    encode_png_of((width, height), RGB8, rgb)
+    encode_png_of((width, height), RGB8, None, rgb)
 }
 
-/// The bytes of a PNG file of such samples.
+/// The bytes of a PNG file of such samples, with a text under a keyword.
 ///
 /// # Errors
 /// More or fewer samples than the picture has.
-pub(super) fn encode_png_of(size: (u32, u32), kind: Kind, samples: &[u8]) -> io::Result<Vec<u8>> {
+pub(super) fn encode_png_of(
+    size: (u32, u32),
+    kind: Kind,
+    text: Option<(&str, &str)>,
+    samples: &[u8],
+) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    let mut writer = png_writer(&mut bytes, size, kind, None)?;
+    let mut writer = png_writer(&mut bytes, size, kind, text)?;
     let mut stream = writer.stream_writer()?;
     stream.write_all(samples)?;
     stream.finish()?;

@@ -64,7 +64,8 @@ const MAX_PATHS: u64 = 1 << 24;
 pub struct Options {
     /// Asks of which pixels the kernel is unsure, which it says in kernels of its own.
     pub certified: bool,
-    /// Asks for the colours of pixels, too, before they are quantised; with pictures that are not certified.
+    /// Asks for the colours of pixels, too, before they are quantised. Of a certified picture the kernel has to be `double` in `f64`, and
+    /// is sure of a pixel where it is of the levels of its colour, those of 8 bits and those of 16.
     pub linear: bool,
     /// Asks for terms of first hits in place of colours, with effects that follow no ray any further.
     pub terms: bool,

@@ -3,12 +3,43 @@
 #![allow(clippy::unreadable_literal, reason = "colours are written as `rrggbb`")]
 
 use glam::DVec3;
+use serde::Serialize;
 
 use super::columns::LEVELS;
 use super::elements::Element;
 use super::frame::Frame;
 use super::map::Map;
 use super::options::{ByColumn, Coloring};
+
+/// What the colours of a column of numbers stand for.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ColorScale {
+    /// The column's name.
+    pub column: String,
+    /// The colours.
+    pub map: Map,
+    /// The values at the beginning of the map and at its end; where they are one, it has the colour in the middle.
+    pub range: (f64, f64),
+}
+
+impl ColorScale {
+    /// Of a frame; none where its colours are no column's, or that has no numbers.
+    pub(super) fn of(frame: &Frame, coloring: &Coloring, range: (f64, f64)) -> Option<Self> {
+        let Coloring::Column(by) = coloring else { return None };
+        let map = by.map_of(frame);
+        let is_scale =
+            map != Map::Categories && frame.words.len() == 0 && frame.values.iter().any(|value| !value.is_nan());
+        is_scale.then(|| Self { column: by.name.clone(), map, range })
+    }
+}
+
+impl ByColumn {
+    /// The map that is taken.
+    fn map_of(&self, frame: &Frame) -> Map {
+        let usual = if frame.words.len() > 0 { Map::Categories } else { Map::Viridis };
+        self.map.unwrap_or(usual)
+    }
+}
 
 /// The colour of particles of which nothing else is known.
 const PLAIN: u32 = 0x7fa6cc;
@@ -43,9 +74,8 @@ pub(super) fn colors<'a>(frame: &'a Frame, coloring: &Coloring, range: (f64, f64
             let color = *color;
             Box::new(move |_| color)
         }
-        Coloring::Column(ByColumn { map, .. }) => {
-            let is_words = frame.words.len() > 0;
-            let map = map.unwrap_or(if is_words { Map::Categories } else { Map::Viridis });
+        Coloring::Column(by) => {
+            let map = by.map_of(frame);
             let colors = map.colors();
             Box::new(move |index| match frame.values[index] {
                 value if value.is_nan() => missing,
@@ -78,7 +108,11 @@ fn category(colors: &[DVec3], index: usize) -> DVec3 {
 
 /// The colour of a value between the ends of a map; beyond them that of the end.
 fn mapped(colors: &[DVec3], value: f64, (low, high): (f64, f64)) -> DVec3 {
-    let part = if low == high { 0.5 } else { ((value - low) / (high - low)).clamp(0.0, 1.0) };
+    color_at(colors, if low == high { 0.5 } else { ((value - low) / (high - low)).clamp(0.0, 1.0) })
+}
+
+/// The colour at a part of the way through a map, 0 to 1.
+pub(crate) fn color_at(colors: &[DVec3], part: f64) -> DVec3 {
     let at = part * (colors.len() - 1) as f64;
     let below = (at as usize).min(colors.len() - 2);
     colors[below].lerp(colors[below + 1], at - below as f64)

@@ -9,6 +9,7 @@
 use std::str::FromStr;
 
 use glam::DVec3;
+use serde::Serialize;
 
 use super::color::{hex_color, hex_of};
 
@@ -21,7 +22,8 @@ const STEPS: usize = 256;
 const CATEGORIES: [u32; 7] = [0x56b4e9, 0xe69f00, 0x009e73, 0xcc79a7, 0xf0e442, 0x0072b2, 0xd55e00];
 
 /// How numbers become colours.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
 #[allow(missing_docs, reason = "the names say all")]
 pub enum Map {
     Viridis,

@@ -50,6 +50,8 @@ use self::scene::{Look, Made, scene_of};
 use self::source::{Source, Stop};
 use crate::scene::{Collector, Detail, Line, Parsed, Scene, SceneError, Span, Topic};
 
+pub use color::ColorScale;
+pub(crate) use color::color_at;
 pub use elements::{ELEMENTS, Element};
 pub use format::Format;
 pub use light::Lamps;
@@ -64,6 +66,8 @@ pub struct Imported {
     pub parsed: Parsed,
     /// The scene's lights, which turn with the eye.
     pub lamps: Option<Lamps>,
+    /// What its colours stand for, where they are those of a column of numbers.
+    pub color_scale: Option<ColorScale>,
     /// What was decided in the user's place.
     pub notes: Vec<String>,
 }
@@ -158,11 +162,11 @@ impl<'r> Import<'r> {
             }
         }
         let number = self.number.max(1);
-        let (scene, lamps, notes) = match made {
-            Some(Made { scene, lamps, notes }) => (Some(scene), Some(lamps), notes),
-            None => (None, None, Vec::new()),
+        let (scene, lamps, color_scale, notes) = match made {
+            Some(Made { scene, lamps, color_scale, notes }) => (Some(scene), Some(lamps), color_scale, notes),
+            None => (None, None, None, Vec::new()),
         };
-        Imported { number, parsed: Parsed::of(&self.name, scene, log), lamps, notes }
+        Imported { number, parsed: Parsed::of(&self.name, scene, log), lamps, color_scale, notes }
     }
 }
 

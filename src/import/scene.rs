@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::camera::Camera;
-use super::color::{colors, range_of};
+use super::color::{ColorScale, colors, range_of};
 use super::elements::Element;
 use super::frame::{Frame, Numbers};
 use super::light::{Lamps, material};
@@ -26,6 +26,7 @@ pub(super) struct Look {
 pub(super) struct Made {
     pub(super) scene: Scene,
     pub(super) lamps: Lamps,
+    pub(super) color_scale: Option<ColorScale>,
     /// What the user may want to know of it.
     pub(super) notes: Vec<String>,
 }
@@ -84,7 +85,8 @@ pub(super) fn scene_of(frame: &Frame, options: &Options, look: &mut Option<Look>
         ambient: DVec3::ONE,
         ..Scene::new(look.camera.window, width, height)
     };
-    Ok(Made { scene, lamps, notes })
+    let color_scale = ColorScale::of(frame, &options.coloring, look.range);
+    Ok(Made { scene, lamps, color_scale, notes })
 }
 
 /// How many particles, with their verb.

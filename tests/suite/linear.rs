@@ -4,7 +4,7 @@ use glam::DVec3;
 use trueray::area::Area;
 use trueray::cpu::Reference;
 use trueray::effects::Effects;
-use trueray::engine::{Backend, Engine, Options, Rows, render_bands, render_picture};
+use trueray::engine::{Backend, Engine, Options, render_bands, render_picture};
 use trueray::film::Picture;
 use trueray::linear::Linear;
 use trueray::pattern::Pattern;
@@ -288,19 +288,6 @@ fn the_program_writes_the_devices_colours() {
     let levels = expected.iter().flat_map(|pixel| Quantize::Truncate.levels16(pixel.color));
     let same = png(&place, "a.png").2.into_iter().zip(levels).filter(|(a, b)| a == b).count();
     assert!(same + 3 >= 3 * expected.len(), "{same}");
-}
-
-#[test]
-fn certified_pictures_have_no_colours() {
-    let Some(gpu) = gpu("linear::certified_pictures_have_no_colours") else { return };
-    let scene = small();
-    let settings = settings(1);
-    let viewed = scene.viewed(&settings);
-    let effects = Effects::of(&viewed);
-    let options = Options { linear: true, ..Options::default() };
-    let certified = Backend::Certified(&gpu, Tier::Fast);
-    let error = Engine::<Rows>::verified(certified, viewed, &effects, &options, Verify::Nothing).err().unwrap();
-    assert!(error.to_string().contains("certified pictures are levels"), "{error}");
 }
 
 // --- refusals --------------------------------------------------------------------------------------------------------------

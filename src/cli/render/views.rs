@@ -190,13 +190,13 @@ fn jobs(args: &Args, loaded: &Loaded, frames: Vec<(u32, Frame)>, guard: &mut Gua
 
 /// Renders a frame and hands on what becomes of it.
 fn render(args: &Args, prepared: Result<Option<Prepared>, Failure>, hand_on: &mut dyn FnMut(Step)) {
-    let Prepared { target, coding, note, levels, mut engine, mut stats, start } = match prepared {
+    let Prepared { target, coding, note, levels, bar, mut engine, mut stats, start } = match prepared {
         Ok(Some(prepared)) => prepared,
         Ok(None) => return hand_on(Step::There),
         Err(failure) => return hand_on(Step::Failed(failure)),
     };
     let number = stats.frame.unwrap_or_default();
-    hand_on(Step::Begin { number, target, coding, note, levels, size: engine.size() });
+    hand_on(Step::Begin { number, target, coding, note, levels, bar, size: engine.size() });
     let rendered = render_bands(&mut engine, |band| {
         hand_on(Step::Rows { rgb: band.rgb.to_vec(), linear: band.linear.to_vec() });
         Ok::<_, gpu::Error>(())

@@ -12,12 +12,13 @@ use crate::cli::input::{Loaded, print_doubts};
 use crate::cli::linear::Coding;
 use crate::cli::render::explain;
 use crate::cli::stats::Stats;
+use crate::color_bar::ColorBar;
 use crate::doubts::doubts;
 use crate::effects::Effects;
 use crate::engine::{Backend, Engine, Times, device_name, ms};
 use crate::film::Target;
 use crate::gpu::Gpu;
-use crate::import::Lamps;
+use crate::import::{ColorScale, Lamps};
 use crate::kept::Kept;
 use crate::scene::{Scene, Window};
 use crate::settings::{Quantize, Settings};
@@ -38,6 +39,8 @@ pub(super) struct Prepared<'a> {
     pub(super) note: Option<String>,
     /// How colours become levels, and the background.
     pub(super) levels: (Quantize, DVec3),
+    /// What is drawn over the picture.
+    pub(super) bar: Option<ColorBar>,
     pub(super) engine: Engine<'a>,
     /// What is known of it so far.
     pub(super) stats: Box<Stats>,
@@ -55,6 +58,7 @@ pub(super) struct Source {
     file_size: [u32; 2],
     /// Lights that turn with the eye, where it has such.
     lamps: Option<Lamps>,
+    color_scale: Option<ColorScale>,
     /// What its frames share.
     kept: Kept,
     /// Reading and parsing; of the first frame that shows it.
@@ -64,10 +68,11 @@ pub(super) struct Source {
 impl Source {
     /// With a size in place of its own, where there is one.
     pub(super) fn new(loaded: Loaded, size: Option<(u32, u32)>) -> Self {
-        let Loaded { name, scene, lamps, parse_time, .. } = loaded;
+        let Loaded { name, scene, lamps, color_scale, parse_time, .. } = loaded;
         let file_size = [scene.width, scene.height];
         let size = size.map_or(file_size, <[u32; 2]>::from);
-        Self { name, window: scene.window, size, file_size, scene, lamps, kept: Kept::default(), parse_time }
+        let (window, kept) = (scene.window, Kept::default());
+        Self { name, window, size, file_size, scene, lamps, color_scale, kept, parse_time }
     }
 }
 
@@ -113,7 +118,7 @@ impl<'a> Preparer<'a> {
             None => &mut self.own,
             Some(path) => other(&mut self.other, path, args)?,
         };
-        let Source { name, scene, lamps, .. } = source;
+        let Source { name, scene, lamps, color_scale, .. } = source;
         let settings = Settings { view: frame.view, ..*self.settings };
         frame.apply(scene, source.window, source.size);
         if let Some(lamps) = lamps {
@@ -132,7 +137,7 @@ impl<'a> Preparer<'a> {
         }
         let viewed = scene.viewed_again(&settings, &source.kept);
         let effects = args.picture.renderable_effects(&viewed)?;
-        let selection = args.device.selection(gpu, &viewed, &effects);
+        let selection = args.device.selection(gpu, &viewed, &effects).with_colors(coding.is_linear());
         if (args.explain || args.verbose) && self.explained.as_ref() != Some(&effects) {
             explain(&format!("{name}: {}", frame_name(number)), &effects, &selection, None, gpu);
             self.explained = Some(effects.clone());
@@ -143,6 +148,7 @@ impl<'a> Preparer<'a> {
         let note = |format| args.part.note(scene, area, (&settings, &effects), (gpu, &selection), format);
         let note = coding.levels().map_or(Ok(None), note)?;
         let levels = (settings.quantize, scene.background);
+        let bar = args.color_bar.bar(name, color_scale.as_ref(), area.size(), levels)?;
         if note.as_ref().map_or(Ok(false), |note| note.is_done(&target, true))? {
             return Ok(None);
         }
@@ -164,6 +170,7 @@ impl<'a> Preparer<'a> {
             certified: None,
             precision: gpu.map(|_| selection),
             sampled: None,
+            color_bar: bar.as_ref().map(|bar| bar.scale().clone()),
             rays: None,
             not_finite_pixels: 0,
             verified: None,
@@ -174,7 +181,7 @@ impl<'a> Preparer<'a> {
             total_ms: 0.0,
             peak_memory_mib: None,
         });
-        Ok(Some(Prepared { target, coding, note: note.map(|note| note.line), levels, engine, stats, start }))
+        Ok(Some(Prepared { target, coding, note: note.map(|note| note.line), levels, bar, engine, stats, start }))
     }
 }
 

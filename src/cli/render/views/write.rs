@@ -14,6 +14,7 @@ use crate::cli::output::{err, errln};
 use crate::cli::progress::Progress;
 use crate::cli::render::{say_cut, say_not_finite};
 use crate::cli::stats::{Stats, peak_memory_mib};
+use crate::color_bar::ColorBar;
 use crate::engine::ms;
 use crate::film::{OutputError, Target};
 use crate::linear::Linear;
@@ -29,6 +30,7 @@ pub(super) enum Step {
         coding: Coding,
         note: Option<String>,
         levels: (Quantize, DVec3),
+        bar: Option<ColorBar>,
         size: (u32, u32),
     },
     /// 3 bytes a pixel, and colours where the file has them.
@@ -79,15 +81,15 @@ impl<'a> Writer<'a> {
 
     pub(super) fn take(&mut self, step: Step) {
         match step {
-            Step::Begin { number, target, coding, note, levels, size } => {
-                let opened =
-                    self.open(number, &target, |target| Film::new(coding, target, size, note.as_deref(), levels));
+            Step::Begin { number, target, coding, note, levels, bar, size } => {
+                let film = |target: &Target| Film::new(coding, target, size, note.as_deref(), levels, bar);
+                let opened = self.open(number, &target, film);
                 self.file = self.noted(opened.map_err(|failure| failure.of(&frame_name(number))));
             }
             Step::Rows { rgb, linear } => {
                 let Some(File { number, path, mut writer, took }) = self.file.take() else { return };
                 let start = Instant::now();
-                let written = writer.write(&rgb, &linear).map(|()| writer);
+                let written = writer.write(&rgb, &linear).map(|_| writer);
                 let written = written.map_err(|error| Failure::from(error).of(&frame_name(number)));
                 let took = took + start.elapsed();
                 self.file = self.noted(written).map(|writer| File { number, path, writer, took });
