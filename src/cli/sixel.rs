@@ -11,8 +11,8 @@ use crate::film::Picture;
 const COLORS: usize = 256;
 /// Rows of a band.
 const BAND: u32 = 6;
-/// Of so many pixels one is looked at where there are more colours: fast and good, by the crate's word.
-const SAMPLED: i32 = 10;
+/// Where there are more colours, about so many pixels are looked at for those that stand for them, which takes a tenth of a second.
+const LOOKED_AT: u64 = 50_000;
 
 /// `picture` for a terminal that shows sixels, in its own colours where it has few, without dithering. A terminal has levels in whole
 /// percents.
@@ -66,7 +66,9 @@ fn palette(picture: &Picture) -> (Vec<[u8; 3]>, BTreeMap<[u8; 3], usize>) {
     }
     let opaque = |[red, green, blue]: [u8; 3]| [red, green, blue, 255];
     let pixels: Vec<u8> = picture.pixels().iter().flat_map(|&pixel| opaque(pixel)).collect();
-    let quantised = NeuQuant::new(SAMPLED, COLORS, &pixels);
+    // One of so many, of which the crate takes 30 at the most.
+    let one_of = (picture.pixel_count() / LOOKED_AT).clamp(1, 30) as i32;
+    let quantised = NeuQuant::new(one_of, COLORS, &pixels);
     let index_of = own.into_iter().map(|color| (color, quantised.index_of(&opaque(color)))).collect();
     (quantised.color_map_rgb().as_chunks::<3>().0.to_vec(), index_of)
 }
@@ -132,6 +134,6 @@ mod tests {
         let off = |(a, b): (&[u8; 3], &[u8; 3])| a.iter().zip(b).map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>();
         let errors: Vec<f64> = rows.iter().flatten().zip(picture.pixels()).map(off).collect();
         let mean = errors.iter().sum::<f64>() / errors.len() as f64;
-        assert!(mean < 15.0 && errors.iter().all(|&error| error < 60.0), "{mean}");
+        assert!(mean < 18.0 && errors.iter().all(|&error| error < 60.0), "{mean}");
     }
 }
