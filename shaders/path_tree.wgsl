@@ -107,12 +107,10 @@ fn tree_color(primary: Ray, seen: Hit) -> vec3r {
 fn follow(ray: Ray, hit: Hit, slot: u32) {
     if hit.found {
         finish(slot, tree_color(ray, hit));
+    } else if ONE_RAY {
+        finish(slot, vec3r());
     } else {
-        var color = params.background;
-        if ONE_RAY {
-            color = vec3r();
-        }
-        finish(slot, color);
+        finish(slot, params.background);
     }
     add_counts(slot);
 }

@@ -499,6 +499,11 @@ fn the_table_of_a_pixel_is_that_of_the_command() {
             assert_eq!(found["waits"], false);
             assert_eq!(found["tiers"].as_array().unwrap().len(), if device == "gpu" { 3 } else { 0 }, "{found}");
 
+            // Of this very pixel.
+            for (tier, c) in found["tiers"].as_array().unwrap().iter().flat_map(|tier| [0, 1, 2].map(|c| (tier, c))) {
+                let [color, expected] = [&tier["color"], &found["color"]].map(|color| color[c].as_f64().unwrap());
+                assert!((color - expected).abs() < 1e-3, "{message}: {tier} for {expected}");
+            }
             let options = state["options"].as_str().unwrap();
             let json: Value = serde_json::from_str(&of_command(&work, options, place, device, &["--json"])).unwrap();
             for field in ["single", "device", "tiers", "lacking"] {
