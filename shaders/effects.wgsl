@@ -33,5 +33,11 @@ override LINEAR: bool = false;
 // Each pixel also says how many rays it took.
 override COUNT_RAYS: bool = false;
 
+// Or how many tests of a ray with a sphere.
+override COUNT_TESTS: bool = false;
+
+// Each pixel shows what one mirrored or refracted ray adds to its colour, and nothing else.
+override ONE_RAY: bool = false;
+
 // Invocations of a workgroup of the kernels that are not over tiles.
 override GROUP: u32 = 64u;

@@ -4,18 +4,29 @@
 // kept, and where nothing is hit there is nothing to shade.
 // needs: bound, counters, distance, effects, film, intersect, ray, real, reflect, scene, secondary, shade, types
 
+// With ONE_RAY, the number of that ray, from 1 on.
+@group(0) @binding(19) var<uniform> asked: vec2<u32>;
+
 fn follow(primary: Ray, seen: Hit, slot: u32) {
     var ray = primary;
     var hit = seen;
     // What hits nothing shows the background; a reflection ray that hits nothing adds black.
     var color = select(params.background, vec3r(), hit.found);
+    if ONE_RAY {
+        color = vec3r();
+    }
     var throughput = real(1.0);
     var depth = 0u;
     if hit.found {
         loop {
             let material = material_of(hit.sphere);
             let surface = surface_at(ray, hit, material);
-            color += local_color(surface, material, true) * throughput;
+            let light = local_color(surface, material, true) * throughput;
+            if ONE_RAY {
+                color = select(color, light, depth == asked.x);
+            } else {
+                color += light;
+            }
             hit = no_hit();
             if REFLECTIONS {
                 throughput = weakened(throughput, material.kr);

@@ -3,6 +3,9 @@
 // needs: bound, counters, effects, film, intersect, ray, real, reflect, refract, scene, secondary, shade, types, waiting
 // host: MAX_WAITING
 
+// With ONE_RAY, the number of that ray, from 1 on, in the order in which they are followed.
+@group(0) @binding(19) var<uniform> asked: vec2<u32>;
+
 // A refraction ray that waits until the reflected ray beside it has been followed to its end.
 struct Waiting {
     ray: Ray,
@@ -25,6 +28,7 @@ fn tree_color(primary: Ray, seen: Hit) -> vec3r {
     var depth = 0u;
     var waiting: array<Waiting, MAX_WAITING>;
     var count = 0u;
+    var number = 0u;
     // One looks through glass at the background; a ray that was reflected and hits nothing adds black.
     var shows_background = true;
     loop {
@@ -35,7 +39,12 @@ fn tree_color(primary: Ray, seen: Hit) -> vec3r {
         if hit.found {
             let material = material_of(hit.sphere);
             let surface = surface_at(ray, hit, material);
-            color += local_color(surface, material, true) * throughput;
+            let light = local_color(surface, material, true) * throughput;
+            if ONE_RAY {
+                color = select(color, light, number == asked.x);
+            } else {
+                color += light;
+            }
 
             if depth < params.max_depth {
                 let kt = glasses[surface.sphere].kt;
@@ -57,11 +66,19 @@ fn tree_color(primary: Ray, seen: Hit) -> vec3r {
                     if COUNT_RAYS {
                         reflection_rays++;
                     }
+                    if ONE_RAY {
+                        number++;
+                    }
                     continue;
                 }
             }
         } else if shows_background {
-            color += params.background * throughput;
+            let light = params.background * throughput;
+            if ONE_RAY {
+                color = select(color, light, number == asked.x);
+            } else {
+                color += light;
+            }
             note_background();
         }
         if count == 0u {
@@ -78,6 +95,9 @@ fn tree_color(primary: Ray, seen: Hit) -> vec3r {
         if COUNT_RAYS {
             reflection_rays++;
         }
+        if ONE_RAY {
+            number++;
+        }
     }
     is_cut |= count != 0u;
     return color;
@@ -87,6 +107,8 @@ fn tree_color(primary: Ray, seen: Hit) -> vec3r {
 fn follow(ray: Ray, hit: Hit, slot: u32) {
     if hit.found {
         finish(slot, tree_color(ray, hit));
+    } else if ONE_RAY {
+        finish(slot, vec3r());
     } else {
         finish(slot, params.background);
     }

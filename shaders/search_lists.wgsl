@@ -5,6 +5,9 @@
 // The nearer of a hit and the intersection with one more sphere; of equal ones the lower index.
 fn nearer_of(nearest: Hit, ray: Ray, body: Body, sphere: u32, exit: Exit, range: Range) -> Hit {
     note_tested(ray, body, exit, range);
+    if COUNT_TESTS {
+        other_tests++;
+    }
     return nearer_root(nearest, accepted_root(ray, body, exit, range), sphere);
 }
 
@@ -30,6 +33,9 @@ fn nearest_seen(ray: Ray, pixel: vec2<u32>) -> Hit {
             let body = body_of(sphere);
             nearest = nearer_root(nearest, other_root(ray, body, range), sphere);
             note_seen(ray, body, range);
+            if COUNT_TESTS {
+                other_tests++;
+            }
             if TANGENTS & !CERTIFIED {
                 is_unsure |= may_touch(ray, body);
             }
@@ -121,6 +127,9 @@ fn any_hit(ray: Ray, own: Own, light: Light, index: u32) -> bool {
             is_last |= is_behind(body, light.position, distance);
             blocked |= blocks(ray, body, exit, t_min);
             note_crossed(ray, body, exit, t_min);
+            if COUNT_TESTS {
+                shadow_tests++;
+            }
             if is_over {
                 break;
             }

@@ -34,11 +34,17 @@ fn walk_paths(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation
     var nearest = no_hit();
     var walk: Walk;
     walk.goes_on = false;
+    // Whose tests are counted.
+    var slot = 0u;
     var turns = 0u;
     loop {
         let is_over = turns >= MAX_TURNS;
         if is_over | !walk.goes_on {
             if current < end {
+                if COUNT_TESTS {
+                    add_counts(slot);
+                    other_tests = 0u;
+                }
                 let bits = select(0u, HIT_FOUND, nearest.found) | select(0u, HIT_INSIDE, nearest.inside);
                 let word = nearest.sphere | bits | select(0u, HIT_CUT, walk.goes_on);
                 if CERTIFIED {
@@ -50,6 +56,9 @@ fn walk_paths(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation
                 }
             }
             let path = path_of(min(next, end - 1u));
+            if COUNT_TESTS {
+                slot = path.slot;
+            }
             ray = path.ray;
             exit = exit_of(path.own, ray);
             begin_secondary(ray, path.own, exit, range);

@@ -64,6 +64,11 @@ impl Area {
         (self.left..self.right()).contains(&x) && (self.top..self.bottom()).contains(&y)
     }
 
+    /// Where among its pixels, row by row, the one in this column and row is; it has to be one of them.
+    pub fn index(self, [x, y]: [u32; 2]) -> usize {
+        (y - self.top) as usize * self.width as usize + (x - self.left) as usize
+    }
+
     /// Whether it has any pixel, and none that a picture of this size has not.
     pub fn is_of(self, (width, height): (u32, u32)) -> bool {
         let fits = |first: u32, count: u32, all: u32| count > 0 && first < all && count <= all - first;

@@ -107,6 +107,8 @@ pub mod part;
 #[doc(hidden)]
 pub mod pattern;
 #[doc(hidden)]
+pub mod pixel;
+#[doc(hidden)]
 pub mod precision;
 mod random;
 mod renderer;

@@ -71,8 +71,8 @@ impl fmt::Display for TooMany {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Plane {
     pub(super) aov: Aov,
-    /// The index of its light, where there is a layer for each.
-    pub(super) light: Option<usize>,
+    /// The index of its light or the number of its ray, from 1 on, where there is a layer for each.
+    pub(super) number: Option<usize>,
 }
 
 /// The planes of these kinds, in the order of [`Aov`].
@@ -82,7 +82,7 @@ pub(super) fn planes(wanted: &[Aov], lights: usize) -> Vec<Plane> {
     sorted.dedup();
     let of_lights =
         |aov: Aov| -> Vec<Option<usize>> { if aov.per_light() { (0..lights).map(Some).collect() } else { vec![None] } };
-    sorted.iter().flat_map(|&aov| of_lights(aov).into_iter().map(move |light| Plane { aov, light })).collect()
+    sorted.iter().flat_map(|&aov| of_lights(aov).into_iter().map(move |number| Plane { aov, number })).collect()
 }
 
 /// One row of pixels.
@@ -142,8 +142,7 @@ pub fn layers(
             layers.extend((0..most).map(|bounce| {
                 let of = |rays: &Vec<[f64; 3]>| rays.get(bounce).copied().unwrap_or_default().map(|x| x as f32);
                 let values = rows.iter().flat_map(|row| &row.bounces).flat_map(of).collect();
-                let name = format!("{}-{}", plane.aov, bounce + 1);
-                Layer { name, values, ..plane.layer((width, height)) }
+                Layer { values, ..Plane { number: Some(bounce + 1), ..*plane }.layer((width, height)) }
             }));
             continue;
         }
@@ -160,7 +159,7 @@ fn pixel_of(rgb: &[u8], index: usize) -> [u8; 3] {
 impl Plane {
     /// The layer before there are values.
     pub(super) fn layer(self, (width, height): (u32, u32)) -> Layer {
-        let name = self.light.map_or_else(|| self.aov.name(), |light| format!("{}-{light}", self.aov));
+        let name = self.number.map_or_else(|| self.aov.name(), |number| format!("{}-{number}", self.aov));
         Layer { aov: self.aov, name, width, height, values: Vec::new() }
     }
 
@@ -168,12 +167,12 @@ impl Plane {
     pub(super) fn push(self, record: &PixelRecord, quantize: Quantize, shown: Option<[u8; 3]>, values: &mut Vec<f32>) {
         let first = record.samples.first().and_then(|sample| sample.rays.first());
         let hit = first.and_then(|ray| ray.hit.as_ref());
-        let light = self.light.and_then(|light| hit.and_then(|hit| hit.lights.get(light)));
+        let light = self.number.and_then(|light| hit.and_then(|hit| hit.lights.get(light)));
         let rays = || record.samples.iter().flat_map(|sample| &sample.rays);
         let shadows = || rays().flat_map(|ray| &ray.hit).flat_map(|hit| &hit.lights).flat_map(|light| &light.shadow);
         let of_lights = |term: fn(&crate::cpu::LightRecord) -> [f64; 3]| {
             mean(record, |ray| {
-                let light = ray.hit.as_ref().and_then(|hit| hit.lights.get(self.light?));
+                let light = ray.hit.as_ref().and_then(|hit| hit.lights.get(self.number?));
                 light.map_or([0.0; 3], term)
             })
         };
@@ -185,6 +184,10 @@ impl Plane {
             Aov::Ambient => mean(record, |ray| ray.hit.as_ref().map_or([0.0; 3], |hit| hit.ambient)),
             Aov::Diffuse => of_lights(|light| light.diffuse),
             Aov::Specular => of_lights(|light| light.specular),
+            Aov::Bounce => {
+                let number = self.number.and_then(|number| number.checked_sub(1));
+                number.and_then(|at| bounces(record).get(at).copied()).unwrap_or_default()
+            }
             Aov::Error => shown
                 .map_or([0.0; 3], |shown| std::array::from_fn(|c| f64::from(shown[c]) - f64::from(record.levels[c]))),
             Aov::T
@@ -195,8 +198,7 @@ impl Plane {
             | Aov::Rays
             | Aov::Tests
             | Aov::Margin
-            | Aov::Step
-            | Aov::Bounce => {
+            | Aov::Step => {
                 values.push(match self.aov {
                     Aov::T => hit.map_or(f64::INFINITY, |hit| hit.t),
                     Aov::Sphere => hit.map_or(-1.0, |hit| hit.sphere as f64),

@@ -66,27 +66,25 @@ impl Aov {
         matches!(self, Self::NDotL | Self::Shadow | Self::Diffuse | Self::Specular)
     }
 
-    /// Whether a pixel with several samples has their mean, and not the first one's.
-    fn is_mean(self) -> bool {
-        matches!(self, Self::Color | Self::Background | Self::Ambient | Self::Diffuse | Self::Specular)
-    }
-
-    /// Whether the shaders calculate it on the way to a colour, and can say so.
-    fn is_of_kernels(self) -> bool {
+    /// Whether a kernel tells it, of pixels with so many samples: means and sums of all, and of an only one the rest.
+    fn is_told(self, samples: u32) -> bool {
         match self {
-            Self::Bounce | Self::Rays | Self::Tests | Self::Margin | Self::Step | Self::Error => false,
             Self::Color
-            | Self::T
+            | Self::Background
+            | Self::Ambient
+            | Self::Diffuse
+            | Self::Specular
+            | Self::Rays
+            | Self::Tests => true,
+            Self::T
             | Self::Sphere
             | Self::Inside
             | Self::Position
             | Self::Normal
             | Self::NDotL
             | Self::Shadow
-            | Self::Background
-            | Self::Ambient
-            | Self::Diffuse
-            | Self::Specular => true,
+            | Self::Bounce => samples == 1,
+            Self::Margin | Self::Step | Self::Error => false,
         }
     }
 

@@ -149,7 +149,9 @@ impl AovOptions {
         let picture = wanted.contains(&Aov::Error).then(Vec::new);
         let device = match (self.aov_from, backend) {
             (Source::Reference, _) => None,
-            (Source::Device, Backend::Device(gpu, tier)) => Some(DeviceLayers::new(gpu, tier, viewed, effects)?),
+            (Source::Device, Backend::Device(gpu, tier)) => {
+                Some(DeviceLayers::new(gpu, tier, viewed, effects, &wanted)?)
+            }
             (Source::Device, Backend::Certified(..)) => {
                 let message =
                     "--aov-from device does not go with --precision certified, whose pixels are the CPU reference's";
@@ -249,7 +251,7 @@ impl Collector<'_> {
         let shown = self.picture.as_deref();
         let mut layers = layers(inspector, self.lights, self.quantize, &of_reference, shown)?;
         if let Some(device) = device {
-            layers.extend(device.layers(inspector, wanted)?);
+            layers.extend(device.layers(inspector)??);
             layers.sort_by_key(|layer| layer.aov);
         }
         Ok(layers)

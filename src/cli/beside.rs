@@ -3,7 +3,7 @@
 use super::aov::{AovOptions, Collector};
 use super::failure::Failure;
 use super::guard::Guard;
-use super::show::show;
+use super::show::{Show, show};
 use crate::effects::Effects;
 use crate::engine::Backend;
 use crate::film::{Picture, Target};
@@ -15,19 +15,19 @@ pub(super) struct Beside<'a> {
     size: (u32, u32),
     aov: Option<Collector<'a>>,
     /// The rows so far, where the picture is to be shown.
-    shown: Option<Vec<u8>>,
+    shown: Option<(Show, Vec<u8>)>,
 }
 
 impl<'a> Beside<'a> {
     pub(super) fn new(
         aov: &AovOptions,
-        shows: bool,
+        how: Option<Show>,
         viewed: &ViewedScene,
         effects: &Effects,
         backend: Backend<'a>,
     ) -> Result<Self, Failure> {
         let size = (viewed.scene().width, viewed.scene().height);
-        Ok(Self { size, aov: aov.of(viewed, effects, backend)?, shown: shows.then(Vec::new) })
+        Ok(Self { size, aov: aov.of(viewed, effects, backend)?, shown: how.map(|how| (how, Vec::new())) })
     }
 
     /// Takes the next rows, 3 bytes a pixel: as they are rendered, and as the file has them.
@@ -35,7 +35,7 @@ impl<'a> Beside<'a> {
         if let Some(aov) = &mut self.aov {
             aov.add(rgb);
         }
-        if let Some(shown) = &mut self.shown {
+        if let Some((_, shown)) = &mut self.shown {
             shown.extend_from_slice(written);
         }
     }
@@ -48,8 +48,8 @@ impl<'a> Beside<'a> {
         guard: &mut Guard,
         quiet: bool,
     ) -> Result<(), Failure> {
-        if let Some(rgb) = self.shown {
-            show(&Picture::assemble(self.size.0, self.size.1, rgb))?;
+        if let Some((how, rgb)) = self.shown {
+            show(&Picture::assemble(self.size.0, self.size.1, rgb), how)?;
         }
         self.aov.map_or(Ok(()), |aov| aov.write(name, (target.argument(), is_named), guard, quiet))
     }

@@ -35,6 +35,7 @@ mod sampling;
 mod shader;
 mod show;
 mod signals;
+mod sixel;
 mod stats;
 mod stress;
 mod study;

@@ -21,6 +21,7 @@ use super::part::PartOptions;
 use super::particles::ParticleOptions;
 use super::progress::{Progress, Style};
 use super::sampling::{Choice, SamplingOptions};
+use super::show::Show;
 use super::stats::{Sampled, Stats, Verified, peak_memory_mib};
 use super::timeline::Timeline;
 use crate::effects::Effects;
@@ -72,9 +73,9 @@ pub(super) struct Args {
     linear: LinearOptions,
     #[command(flatten)]
     aov: AovOptions,
-    /// Print the picture to the terminal as well
-    #[arg(long, help_heading = "Output")]
-    show: bool,
+    /// Print the picture to the terminal as well; no terminal says by itself that it shows sixels, so they are asked for
+    #[arg(long, value_name = "HOW", value_enum, num_args = 0..=1, require_equals = true, default_missing_value = "auto", help_heading = "Output")]
+    show: Option<Show>,
     /// Write whatever file OUTPUT names: also a hidden one, one without a picture's ending, or over a file that is no picture
     #[arg(long, help_heading = "Output")]
     allow_any_output: bool,
@@ -443,7 +444,7 @@ fn target(args: &Args, loaded: &Loaded) -> Target {
 /// The scene with its target, if that can take a picture.
 fn job(args: &Args, loaded: Loaded, target: Target) -> Result<Job, Failure> {
     args.aov.check(&target)?;
-    if args.show && target == Target::Stdout {
+    if args.show.is_some() && target == Target::Stdout {
         return Err(Failure::new(USAGE, "--show prints to standard output, which the picture is written to"));
     }
     if let Target::File(path) = &target {

@@ -4,30 +4,76 @@ use std::fmt::Write as _;
 use std::io::IsTerminal as _;
 
 use base64::prelude::{BASE64_STANDARD, Engine as _};
+use clap::ValueEnum;
 
 use super::failure::{Failure, OUTPUT};
 use super::output::out;
+use super::sixel::sixels;
 use crate::film::{Picture, encode_png};
 
 /// Columns where there is no terminal that tells its own.
 const COLUMNS: u32 = 80;
+/// Pixels of a column where the terminal does not tell.
+const COLUMN_PIXELS: u32 = 8;
 /// Bytes of a picture in one command of the kitty graphics protocol at the most.
 const CHUNK: usize = 4096;
 
-/// Prints `picture` to standard output, no wider than the terminal: as it is where that is kitty, which `KITTY_WINDOW_ID` or `TERM`
-/// says, otherwise in half blocks of 24-bit colour.
-pub(super) fn show(picture: &Picture) -> Result<(), Failure> {
+/// How a terminal is given a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Show {
+    /// `kitty` where standard output is kitty, which `KITTY_WINDOW_ID` or `TERM` says; otherwise `blocks`
+    Auto,
+    /// Half blocks of 24-bit colour
+    Blocks,
+    /// The kitty graphics protocol
+    Kitty,
+    /// Sixels of 256 colours
+    Sixel,
+}
+
+impl Show {
+    /// What `Auto` stands for here.
+    fn decided(self) -> Self {
+        let is_kitty = || {
+            std::env::var_os("KITTY_WINDOW_ID").is_some()
+                || std::env::var("TERM").is_ok_and(|terminal| terminal.contains("kitty"))
+        };
+        match self {
+            Self::Auto if is_kitty() && std::io::stdout().is_terminal() => Self::Kitty,
+            Self::Auto => Self::Blocks,
+            decided => decided,
+        }
+    }
+}
+
+/// Prints `picture` to standard output, no wider than the terminal.
+pub(super) fn show(picture: &Picture, how: Show) -> Result<(), Failure> {
     let columns = terminal_size::terminal_size().map_or(COLUMNS, |(width, _)| u32::from(width.0));
-    let is_kitty = std::env::var_os("KITTY_WINDOW_ID").is_some()
-        || std::env::var("TERM").is_ok_and(|terminal| terminal.contains("kitty"));
-    if is_kitty && std::io::stdout().is_terminal() {
-        let file = encode_png(picture.width(), picture.height(), picture.rgb());
-        let file = file.map_err(|error| Failure::new(OUTPUT, format!("cannot encode the picture to show: {error}")))?;
-        out!("{}", kitty(&file, columns));
-    } else {
-        out!("{}", half_blocks(picture, columns));
+    match how.decided() {
+        Show::Auto | Show::Blocks => out!("{}", half_blocks(&reduced(picture, columns))),
+        Show::Kitty => {
+            let file = encode_png(picture.width(), picture.height(), picture.rgb());
+            let failed = |error| Failure::new(OUTPUT, format!("cannot encode the picture to show: {error}"));
+            out!("{}", kitty(&file.map_err(failed)?, columns));
+        }
+        Show::Sixel => {
+            let pixels = terminal_pixels().unwrap_or(columns.saturating_mul(COLUMN_PIXELS));
+            out!("{}", sixels(&reduced(picture, pixels)));
+        }
     }
     Ok(())
+}
+
+/// Pixels across the terminal, where it tells them.
+#[cfg(unix)]
+fn terminal_pixels() -> Option<u32> {
+    let size = rustix::termios::tcgetwinsize(std::io::stdout()).ok()?;
+    (size.ws_xpixel > 0).then_some(u32::from(size.ws_xpixel))
+}
+
+#[cfg(not(unix))]
+fn terminal_pixels() -> Option<u32> {
+    None
 }
 
 /// A PNG file by the kitty graphics protocol, as wide as the terminal.
@@ -45,18 +91,15 @@ fn kitty(file: &[u8], columns: u32) -> String {
     text + "\n"
 }
 
-/// Two rows of pixels a line: the upper half of each character in one colour, the lower in another. Wider pictures are made smaller
-/// by means of their levels.
-fn half_blocks(picture: &Picture, columns: u32) -> String {
-    let width = columns.clamp(1, picture.width());
-    let height = (u64::from(picture.height()) * u64::from(width)).div_ceil(u64::from(picture.width())) as u32;
+/// Two rows of pixels a line: the upper half of each character in one colour, the lower in another.
+fn half_blocks(picture: &Picture) -> String {
     let mut text = String::new();
-    for upper in (0..height).step_by(2) {
-        for column in 0..width {
-            let [red, green, blue] = mean(picture, [column, upper], [width, height]);
+    for upper in (0..picture.height()).step_by(2) {
+        for column in 0..picture.width() {
+            let [red, green, blue] = picture.pixel(column, upper);
             let _ = write!(text, "\x1b[38;2;{red};{green};{blue}m");
-            if upper + 1 < height {
-                let [red, green, blue] = mean(picture, [column, upper + 1], [width, height]);
+            if upper + 1 < picture.height() {
+                let [red, green, blue] = picture.pixel(column, upper + 1);
                 let _ = write!(text, "\x1b[48;2;{red};{green};{blue}m");
             }
             text.push('▀');
@@ -64,6 +107,14 @@ fn half_blocks(picture: &Picture, columns: u32) -> String {
         text += "\x1b[0m\n";
     }
     text
+}
+
+/// The picture, where it is wider than `most` made smaller by means of its levels.
+fn reduced(picture: &Picture, most: u32) -> Picture {
+    let width = most.clamp(1, picture.width());
+    let height = (u64::from(picture.height()) * u64::from(width)).div_ceil(u64::from(picture.width())) as u32;
+    let places = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
+    Picture::assemble(width, height, places.flat_map(|place| mean(picture, place, [width, height])).collect())
 }
 
 /// The mean of the pixels under one of a smaller picture of this size.
@@ -94,13 +145,13 @@ mod tests {
 
     #[test]
     fn two_rows_share_a_line_and_a_last_one_has_its_own() {
-        let text = half_blocks(&picture(1, 3, |_, y| y as u8), 80);
+        let text = half_blocks(&picture(1, 3, |_, y| y as u8));
         assert_eq!(text, "\x1b[38;2;0;0;0m\x1b[48;2;1;1;1m▀\x1b[0m\n\x1b[38;2;2;2;2m▀\x1b[0m\n");
     }
 
     #[test]
     fn wide_pictures_are_made_smaller_by_means() {
-        let text = half_blocks(&picture(160, 4, |x, _| if x % 2 == 0 { 10 } else { 20 }), 80);
+        let text = half_blocks(&reduced(&picture(160, 4, |x, _| if x % 2 == 0 { 10 } else { 20 }), 80));
         assert_eq!(text.lines().count(), 1);
         assert_eq!(text.matches("\x1b[38;2;15;15;15m\x1b[48;2;15;15;15m▀").count(), 80);
     }

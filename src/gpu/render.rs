@@ -69,8 +69,12 @@ pub struct Options {
     pub linear: bool,
     /// Asks for terms of first hits in place of colours, with effects that follow no ray any further.
     pub terms: bool,
+    /// Asks for what single mirrored and refracted rays add, in place of colours.
+    pub one_ray: bool,
     /// Counts shadow and reflection rays, which a device does in kernels of its own.
     pub count_rays: bool,
+    /// Counts tests of a ray with a sphere instead, in kernels of its own as well.
+    pub count_tests: bool,
     /// Reads the device's own clock, if it has one.
     pub device_clock: bool,
     /// About how long a pixel takes, in ms, where that is known: the first dispatch is sized by that.
@@ -147,8 +151,9 @@ pub struct GpuRenderer<'a, O = Rows> {
     covered_tiles: u64,
     background: ([u8; 3], Linear),
     max_depth: u32,
-    /// Which term of first hits stands in place of the colour, and its light, where the renderer is for terms.
-    term: [u32; 2],
+    /// Which term of first hits stands in place of the colour, and its light, where the renderer is for terms; the number of the ray, where
+    /// it is for single ones.
+    asked: [u32; 2],
     /// Parts that the device's threads take of a dispatch.
     hands: usize,
     work: Option<Work>,
@@ -162,6 +167,8 @@ pub struct GpuRenderer<'a, O = Rows> {
     pixels: u64,
     /// Shadow and reflection rays so far, where they are counted.
     rays: [u64; 2],
+    /// How many rays or tests the pixels of these rows took, where each is asked.
+    counted: Option<(Area, Vec<[u64; 2]>)>,
 }
 
 /// Everything that is needed to build the kernels once a tile asks for them.
@@ -264,8 +271,10 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         let specialisation = Specialisation {
             slots: O::SLOTS,
             certified: options.certified,
-            linear: options.linear || options.terms,
-            count_rays: options.count_rays,
+            linear: options.linear || options.terms || options.one_ray,
+            one_ray: options.one_ray,
+            count_rays: options.count_rays && !options.count_tests,
+            count_tests: options.count_tests,
             dispatch_tiles: dispatch_tiles(gpu.device.info.max_uniform),
             ..Specialisation::new(viewed, effects, kernel, tuning, tables)
         };
@@ -294,6 +303,9 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         let packed = Packed::new(viewed, effects, kernel, &accel, indices, tangent_margin, options.certified);
         if specialisation.variant().copies() && !copies_fit(&gpu.device, tables, &packed, &accel) {
             specialisation.schedule = Schedule::AtOnce;
+        }
+        if options.one_ray {
+            specialisation.schedule = Schedule::InPlace;
         }
         if options.terms {
             // No ray looks for what is beyond the grid.
@@ -338,7 +350,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
             covered_tiles,
             background: (settings.quantize.levels(scene.background), background),
             max_depth: effects.depth,
-            term: [0; 2],
+            asked: [0; 2],
             hands: match gpu.device.info.kind.class() {
                 Class::Software => std::thread::available_parallelism().map_or(1, NonZero::get),
                 Class::Integrated | Class::Discrete => 1,
@@ -351,6 +363,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
             timestamps: options.device_clock.then(|| Timestamps::new(&gpu.device)).flatten(),
             pixels: 0,
             rays: [0; 2],
+            counted: None,
         };
         Ok((renderer, kept))
     }
@@ -439,7 +452,7 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         let specialisation = &self.inputs.specialisation;
         let path = 2 * specialisation.path_size() * u64::from(specialisation.keeps_paths());
         let color = if specialisation.keeps_colors() { specialisation.color_size() } else { 4 };
-        let count = if specialisation.count_rays { RAY_COUNT_SIZE } else { 0 };
+        let count = if specialisation.counts() { RAY_COUNT_SIZE } else { 0 };
         let slots = TILE_PIXELS as u64 * self.samples;
         let bytes =
             (u64::from(self.gpu.tuned().tuning.path_mib) << 20).min(info.max_storage_binding).min(info.max_buffer);
@@ -496,8 +509,8 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         self.submitted += 1;
         self.gpu.device.queue.write_buffer(&work.tiles, 0, &self.packed_places(tiles));
         self.gpu.device.queue.write_buffer(&work.path_queue, 0, &[0; PATH_QUEUE_SIZE as usize]);
-        if self.has_terms() {
-            self.gpu.device.queue.write_buffer(&work.asked, 0, bytemuck::bytes_of(&self.term));
+        if self.has_terms() || self.inputs.specialisation.one_ray {
+            self.gpu.device.queue.write_buffer(&work.asked, 0, bytemuck::bytes_of(&self.asked));
         }
         let mut encoder = self.gpu.device.raw.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {
@@ -554,19 +567,30 @@ impl<'a, O: Output> GpuRenderer<'a, O> {
         repeats
     }
 
-    /// Adds up the ray counts of those of so many places of the last dispatch that were asked for.
-    fn add_rays(&mut self, work: &Work, places: usize, is_asked: impl Fn(usize) -> bool) -> Result<(), Error> {
-        if self.inputs.specialisation.count_rays {
-            let samples = self.samples as usize;
-            let sum = |counts: &[u32]| {
-                let places = counts.as_chunks::<2>().0.chunks(samples).enumerate();
-                let asked = places.filter(|(place, _)| is_asked(*place)).flat_map(|(_, counts)| counts);
-                asked.fold([0, 0], |[s, r], [shadow, reflection]| [s + u64::from(*shadow), r + u64::from(*reflection)])
-            };
-            let [shadow, reflection] = work.ray_counts.read(&self.gpu.device, 2 * places * samples, sum)?;
-            self.rays = [self.rays[0] + shadow, self.rays[1] + reflection];
+    /// Adds up the counts of those of so many places of the last dispatch that `asked` has a pixel for.
+    fn add_counts(
+        &mut self,
+        work: &Work,
+        places: usize,
+        asked: impl Fn(usize) -> Option<[u32; 2]>,
+    ) -> Result<(), Error> {
+        if !self.inputs.specialisation.counts() {
+            return Ok(());
         }
-        Ok(())
+        let (samples, rays, counted) = (self.samples as usize, &mut self.rays, &mut self.counted);
+        let add = |counts: &[u32]| {
+            for (place, counts) in counts.as_chunks::<2>().0.chunks(samples).enumerate() {
+                let Some(pixel) = asked(place) else { continue };
+                let sum = counts
+                    .iter()
+                    .fold([0, 0], |[s, o], &[shadow, other]| [s + u64::from(shadow), o + u64::from(other)]);
+                *rays = [rays[0] + sum[0], rays[1] + sum[1]];
+                if let Some((area, counted)) = counted {
+                    counted[area.index(pixel)] = sum;
+                }
+            }
+        };
+        work.ray_counts.read(&self.gpu.device, 2 * places * samples, add)
     }
 
     /// Sizes the next dispatch by the last one's time, growing by a factor of 4 at most.

@@ -5,8 +5,10 @@ use serde::Serialize;
 use super::effect_cost::EffectTimes;
 use super::preview::PreviewOptions;
 use super::scene_file::SceneError;
+use crate::cpu::Margin;
 use crate::effects;
 use crate::engine::Times;
+use crate::pixel::Beside;
 use crate::precision::Tier;
 use crate::sampling::Density;
 use crate::settings::Convention;
@@ -19,6 +21,8 @@ pub enum PageMessage<'a> {
     State(Box<PageState<'a>>),
     /// The pixel that was asked for.
     Pixel(PickedPixel<'a>),
+    /// The table of the last pixel that was asked for, where its tiers were still to come.
+    Tiers(PixelTable<'a>),
     /// What the effects cost, as was asked for.
     Costs {
         /// One for each effect.
@@ -141,8 +145,28 @@ pub struct PickedPixel<'a> {
     pub rgb: Option<[u8; 3]>,
     /// What its ray meets first; none is the background.
     pub hit: Option<PickedHit<'a>>,
-    /// All its rays as `trueray pixel` prints them; none of a scene with so many spheres that it takes long.
-    pub table: Option<String>,
+    /// All its rays, and what stands beside them.
+    pub table: Option<PixelTable<'a>>,
+    /// Why there is no such table.
+    pub no_table: Option<String>,
+}
+
+/// What `trueray pixel` tells of a pixel.
+#[derive(Debug, Serialize)]
+pub struct PixelTable<'a> {
+    /// As it prints it.
+    pub text: String,
+    /// The reference's colour, unclamped.
+    pub color: [f64; 3],
+    /// Its levels.
+    pub levels: [u8; 3],
+    /// The nearest of each kind of decision, the very nearest first.
+    pub decisions: &'a [Margin],
+    /// What stands beside the reference, as in the command's JSON.
+    #[serde(flatten)]
+    pub beside: &'a Beside,
+    /// Whether tiers are still to come.
+    pub waits: bool,
 }
 
 /// A sphere that a pixel shows.

@@ -28,7 +28,7 @@ mod wake_signal;
 
 pub use canvas::Canvas;
 pub use effect_cost::EffectTimes;
-pub use messages::{Controls, PageMessage, PageState, PickedHit, PickedPixel, SampledPart, SceneSummary};
+pub use messages::{Controls, PageMessage, PageState, PickedHit, PickedPixel, PixelTable, SampledPart, SceneSummary};
 pub use patch::{PATCH, PICTURE_FILE, Patch, Rectangle};
 pub use pose::{FlightScale, Pose};
 pub use preview::{PreviewMode, PreviewOptions};

@@ -84,7 +84,7 @@ impl RenderLoop {
         // Before the first page comes its kernels can be compiled.
         let warm_up = Arc::new(Session::new(self.start.clone(), *lock(&self.scale)));
         while !self.quit.load(Ordering::Relaxed) {
-            let work = || self.work(open()?.as_deref(), &mut read, &mut costs, &warm_up);
+            let work = || self.work(open()?.as_ref(), &mut read, &mut costs, &warm_up);
             // All that was in the making goes with the device; what stays is complete at each step.
             match catch_unwind(AssertUnwindSafe(work)) {
                 Ok(Ok(())) => {}
@@ -113,11 +113,12 @@ impl RenderLoop {
     /// Renders until the device is lost, or `quit`.
     fn work(
         &self,
-        gpu: Option<&Gpu>,
+        shared: Option<&Arc<Gpu>>,
         read: &mut ReadScene,
         costs: &mut CostModel,
         warm_up: &Arc<Session>,
     ) -> Result<(), gpu::Error> {
+        let gpu = shared.map(Arc::as_ref);
         let (mut error, mut kept) = (None, Kept::default());
         let mut revision = 0;
         let mut renderers: Vec<SessionRenderer> = Vec::new();
@@ -145,6 +146,8 @@ impl RenderLoop {
                     kept: &kept,
                     scene_file: &scene_file,
                     error: error.as_ref(),
+                    gpu: shared,
+                    wake: &self.wake,
                     busy,
                     pixels,
                 });

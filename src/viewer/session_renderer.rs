@@ -1,6 +1,7 @@
 //! Renders for one page: a coarse picture first, then finer ones, then the very picture that `trueray render` gives.
 
 mod coarse;
+mod inspection;
 mod one_shots;
 mod pass;
 mod reduced;
@@ -17,6 +18,7 @@ use super::sample_map_cache::{PreviewMap, SampleMapCache};
 use super::scene_file::SceneError;
 use super::session::Session;
 use super::view_state::ViewState;
+use super::wake_signal::WakeSignal;
 use crate::effects::Effects;
 use crate::engine::{Backend, ms};
 use crate::gpu::{self, Gpu};
@@ -29,6 +31,7 @@ use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::view::View;
 use coarse::{Framing, Shown, fitted, framed};
+use inspection::Tiers;
 use pass::{FrameStats, Pass};
 use reduced::{MANY_SPHERES, Reduced};
 
@@ -102,6 +105,8 @@ pub(super) struct SessionRenderer<'g> {
     shown: FrameStats,
     not_finite: u64,
     measurement: Option<CostMeasurement>,
+    /// Of the pixel that the page is told of.
+    tiers: Tiers,
     reduced: Reduced,
     /// Why there is no picture of the newest view, or what was refused.
     problem: Option<String>,
@@ -121,6 +126,10 @@ pub(super) struct Context<'s> {
     pub(super) kept: &'s Kept,
     pub(super) scene_file: &'s str,
     pub(super) error: Option<&'s SceneError>,
+    /// What renders, for whoever does so beside the pictures.
+    pub(super) gpu: Option<&'s Arc<Gpu>>,
+    /// Raised for what is done beside the pictures.
+    pub(super) wake: &'s Arc<WakeSignal>,
     /// Pages that have work.
     pub(super) busy: usize,
     /// Pixels that the page may have.
@@ -154,6 +163,7 @@ impl<'g> SessionRenderer<'g> {
             shown: FrameStats::default(),
             not_finite: 0,
             measurement: None,
+            tiers: Tiers::default(),
             reduced: Reduced::default(),
             problem: None,
             heard: 0,
@@ -166,6 +176,7 @@ impl<'g> SessionRenderer<'g> {
         self.tell = true;
         if replaced {
             (self.job, self.pass, self.measurement, self.reduced.shown) = (None, None, None, None);
+            self.tiers.give_up();
         }
     }
 
@@ -181,7 +192,8 @@ impl<'g> SessionRenderer<'g> {
     /// Whether there is something to do now.
     pub(super) fn has_work(&self) -> bool {
         let unfinished = || self.pass.is_some() || self.job.as_ref().is_some_and(|job| !job.passes.is_empty());
-        let wanted = self.is_outdated() || unfinished() || self.tell || self.measurement.is_some() || self.lacks_map();
+        let asked = || self.measurement.is_some() || self.tiers.has_work();
+        let wanted = self.is_outdated() || unfinished() || self.tell || asked() || self.lacks_map();
         (wanted || self.session.has_one_shots())
             && self.session.is_open()
             && !self.session.is_closed()
@@ -225,6 +237,9 @@ impl<'g> SessionRenderer<'g> {
         self.run_one_shots(context);
         if is_large && self.is_outdated() {
             return Ok(());
+        }
+        if self.session.is_open() {
+            self.tell_tiers(context)?;
         }
         if self.pass.is_none() {
             self.next_pass(context)?;
@@ -293,6 +308,7 @@ impl<'g> SessionRenderer<'g> {
         let took = ms(start.elapsed());
         self.job = Some(Job { version, view, settings, effects, selection, size, passes, map, took });
         (self.pass, self.measurement, self.problem) = (None, None, problem);
+        self.tiers.give_up();
         Ok(())
     }
 

@@ -64,6 +64,11 @@ async function screenshot(name, on = page) {
   if (process.env.SCREENSHOTS) await on.screenshot({ path: join(process.env.SCREENSHOTS, `${name}.png`) });
 }
 
+/** Waits until all that is told of a pixel is there. */
+async function told(on = page) {
+  await on.waitForFunction(() => window.trueray.table && !window.trueray.table.waits);
+}
+
 /** The options that the page shows, as `trueray render` takes them. */
 const options = (state) => state.options.split(' ').filter(Boolean);
 
@@ -166,6 +171,24 @@ test('a click tells what a pixel shows, and the picture is saved as render write
   assert.ok(Math.abs(mark.y + mark.height / 2 - box.y - (y + 0.5) * box.height / picture.height) < 1, JSON.stringify(mark));
   assert.match(await page.locator('#table').textContent(), /taken: the least root that counts/);
 
+  // The reference, its source in f32, and each tier of the device: what the command tells.
+  await told();
+  const command = (...more) => execFileSync(program, ['pixel', 'scene.txt', `${x}`, `${y}`, ...more],
+    { cwd: place.path, encoding: 'utf8', env: { ...process.env, NODEVICE_SELECT: '1' } });
+  const json = JSON.parse(command('--json'));
+  const groups = await page.locator('#beside tbody').evaluateAll((bodies) => bodies.map((body) => [...body.querySelectorAll('th, td')].map((cell) => cell.textContent)));
+  const nine = (value) => Number(value.toPrecision(9)).toString();
+  const ulp = (tier) => `, off in ulp of ${tier.ulps_f64 ? 'f64' : 'f32'}`;
+  const expected = [['CPU reference in f64', json.reference], [`its source in f32${ulp(json.single)}`, json.single],
+    ...json.tiers.map((tier) => [tier.tier + ulp(tier), tier])];
+  assert.deepEqual(groups.slice(0, expected.length).map((cells) => cells.slice(0, 4)), expected.map(([name, { color }]) => [name, ...color.map(nine)]));
+  const signed = (off) => `${off < 0 ? '−' : '+'}${Math.abs(off).toFixed(1)}`;
+  json.tiers.forEach((tier, index) => assert.deepEqual(groups[index + 2].slice(4, 7), (tier.ulps_f64 ?? tier.ulps).map(signed)));
+  assert.match(groups[0][4], /^levels \d+ \d+ \d+; nearest decision: [a-z ]+, margin [\d.e-]+$/);
+  json.tiers.forEach(({ verdict }, index) => assert.equal(groups[index + 2].at(-1) === 'the same levels', verdict === 'same'));
+  if (json.device) assert.equal(await page.locator('#table').textContent(), command());
+  await screenshot('pixel');
+
   await page.locator('#measure').click();
   await page.locator('.cost', { hasText: /(costs|saves) / }).nth(6).waitFor({ timeout: 60000 });
 
@@ -175,6 +198,11 @@ test('a click tells what a pixel shows, and the picture is saved as render write
     { cwd: place.path, env: { ...process.env, NODEVICE_SELECT: '1' } });
   assert.ok(readFileSync(await download.path()).equals(readFileSync(join(place.path, 'render.png'))), 'the files differ');
   if (process.env.SCREENSHOTS) await page.screenshot({ path: join(process.env.SCREENSHOTS, 'page.png') });
+
+  // Another eye sees something else there.
+  await page.locator('#picture').focus();
+  await page.keyboard.press('ArrowLeft');
+  await page.locator('#pixel-title', { hasText: 'Pixel of an earlier view' }).waitFor();
 });
 
 test('a recorded path is what --views renders', async () => {
@@ -452,6 +480,8 @@ function contrast(a, b) {
 
 test('it is readable in both themes, on a phone and on a desk', async () => {
   await settled(page);
+  await page.locator('#picture').click();
+  await told();
   const grounds = {};
   for (const colorScheme of ['dark', 'light']) {
     await page.emulateMedia({ colorScheme });
@@ -464,8 +494,13 @@ test('it is readable in both themes, on a phone and on a desk', async () => {
         return box.left >= 0 && box.right <= innerWidth && box.bottom <= bar.top;
       });
       await screenshot(`${colorScheme}-${width}`);
+      await page.locator('#beside').scrollIntoViewIfNeeded();
+      assert.ok(await page.locator('#beside').evaluate((grid) => grid.scrollWidth <= grid.clientWidth
+        && grid.getBoundingClientRect().right <= innerWidth), `${width}: the table is cut`);
+      await screenshot(`pixel-${colorScheme}-${width}`);
     }
-    const colors = await page.evaluate(() => Object.fromEntries(['aside', 'dt', 'dd', 'h2', '#scale', 'button', '.cost', 'small', 'pre']
+    const colors = await page.evaluate(() => Object.fromEntries(['aside', 'dt', 'dd', 'h2', '#scale', 'button', '.cost', 'small', 'pre',
+      '#beside th', '#beside td', '#beside .off', '#beside .words']
       .map((name) => [name, getComputedStyle(document.querySelector(name))]).map(([name, style]) => [name, [style.color, style.backgroundColor]])));
     const panel = colors.aside[1];
     for (const [name, [color, ground]] of Object.entries(colors)) {

@@ -5,13 +5,14 @@ use std::path::Path;
 
 use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, read};
 use trueray::aov::{Aov, DeviceLayers, Layer, MAX_BOUNCES, TooMany, layers};
-use trueray::cpu::{PixelRecord, picked};
-use trueray::effects::Effects;
+use trueray::cpu::{Inspector, PixelRecord, picked};
+use trueray::effects::{EffectSet, Effects, Request};
 use trueray::film::Picture;
 use trueray::gpu::Gpu;
 use trueray::pattern::Pattern;
 use trueray::scene::Scene;
 use trueray::settings::Settings;
+use trueray::tuning::Tuning;
 use trueray::{DVec3, Tier, View};
 
 use crate::pixel::{inspector, places, same, scenes};
@@ -264,8 +265,8 @@ fn errors_are_those_of_the_devices_picture() {
     assert_eq!(Picture::read(place.path("out.error.png")).unwrap().pixel_count(), 60 * 40);
 }
 
-/// All that a device tells.
-const TOLD: [Aov; 12] = [
+/// All numbers that a device tells.
+const TOLD: [Aov; 13] = [
     Aov::Color,
     Aov::T,
     Aov::Sphere,
@@ -278,15 +279,16 @@ const TOLD: [Aov; 12] = [
     Aov::Ambient,
     Aov::Diffuse,
     Aov::Specular,
+    Aov::Bounce,
 ];
 
 /// Compares what a device tells with what the reference has.
 fn assert_told(what: &str, gpu: &Gpu, tier: Tier, scene: &Scene, settings: &Settings) {
     let viewed = scene.viewed(settings);
-    let mut device = DeviceLayers::new(gpu, tier, &viewed, &Effects::of(&viewed)).unwrap();
-    // Beside those, nothing.
-    let all = [&TOLD[..], &[Aov::Bounce, Aov::Rays, Aov::Tests, Aov::Margin, Aov::Step, Aov::Error]].concat();
-    let found = device.layers(&inspector(scene, settings).0, &all).unwrap();
+    // Beside those, nothing but counts.
+    let all = [&TOLD[..], &[Aov::Margin, Aov::Step, Aov::Error]].concat();
+    let mut device = DeviceLayers::new(gpu, tier, &viewed, &Effects::of(&viewed), &all).unwrap();
+    let found = device.layers(&inspector(scene, settings).0).unwrap().unwrap();
     let told: Vec<Aov> = TOLD.into_iter().filter(|&aov| device.tells(aov)).collect();
     assert_eq!(told.len(), if settings.pattern.count() > 1 { 5 } else { TOLD.len() }, "{what}");
     let expected = layers_of(scene, settings, &told).unwrap();
@@ -339,6 +341,86 @@ fn what_a_device_tells_is_the_references_to_within_rounding() {
     assert_told("double without f64", &pairs, Tier::Double, &scene, &Settings::exact());
 }
 
+/// The device's rays and tests of each pixel, and the reference's.
+fn counted(gpu: &Gpu, tier: Tier, scene: &Scene, settings: &Settings, request: &Request) -> [[Layer; 2]; 2] {
+    let viewed = scene.viewed(settings);
+    let effects = Effects::requested(&viewed, request);
+    let wanted = [Aov::Rays, Aov::Tests];
+    let mut device = DeviceLayers::new(gpu, tier, &viewed, &effects, &wanted).unwrap();
+    let inspector = Inspector::new(&viewed, &effects);
+    let found = device.layers(&inspector).unwrap().unwrap();
+    let expected = layers(&inspector, scene.lights.len(), settings.quantize, &wanted, None).unwrap();
+    [found, expected].map(|layers| layers.try_into().unwrap())
+}
+
+/// A hundred mirrors, for which there is a grid.
+fn mirrors() -> Scene {
+    let mirror = |i: u32| {
+        let [x, y, z] = [i % 10, i / 10 % 5, i / 50].map(f64::from);
+        format!(
+            "SPHERE s{i} {} {} {} 0.3 0.3 0.3 1 1 1 0 0.5 0 0.5 1\n",
+            x - 4.5 + 0.1 * y,
+            y - 2.0,
+            -5.0 - 2.0 * z + 0.03 * x
+        )
+    };
+    let mut scene = scene_of(&(0..100).map(mirror).chain(["LIGHT l 3 4 1 1 1 1\n".to_owned()]).collect::<String>());
+    (scene.width, scene.height) = (32, 24);
+    scene
+}
+
+/// However paths are walked: in `f64` each pixel takes the rays of the reference. Where there is no grid it takes no fewer tests, and few
+/// more: two spheres are tested in each turn, and a loop ends a test or two after the one that ends it. Through a grid it walks in `f32`, by
+/// a cell more or less.
+#[test]
+fn a_device_counts_its_rays_and_tests_of_each_pixel() {
+    let Some(mut gpu) = gpu("aov::a_device_counts_its_rays_and_tests_of_each_pixel") else { return };
+    let (own, is_double) = (gpu.tuned().tuning, gpu.device.info.f64);
+    let four = Settings { pattern: Pattern::Grid { side: 2 }, ..Settings::exact() };
+    let cases = [
+        (small("effects/everything.txt"), false, four, 1e9, 1e9),
+        (small("effects/refraction.txt"), false, Settings::classic(), 1e9, 1e9),
+        (mirrors(), true, Settings::exact(), 1e9, 1e9),
+        (mirrors(), true, Settings::exact(), 0.0, 1e9),
+        (mirrors(), true, four, 0.0, 0.0),
+    ];
+    for (index, (scene, has_grid, settings, in_place_below, in_turn_from)) in cases.into_iter().enumerate() {
+        gpu.set_tuning(Tuning { in_place_below, in_turn_from, ..own }).unwrap();
+        let tier = if is_double { Tier::Double } else { Tier::Robust };
+        let [[rays, tests], [expected_rays, expected]] = counted(&gpu, tier, &scene, &settings, &Request::Auto);
+        assert!(!is_double || rays == expected_rays, "case {index}");
+        assert!(rays.values.iter().sum::<f32>() > 1.2 * settings.pattern.count() as f32 * rays.values.len() as f32);
+        let pairs = tests.values.iter().zip(&expected.values).zip(&rays.values);
+        let off =
+            pairs.filter(|((tests, expected), rays)| tests < expected || **tests > **expected + 2.0 * **rays).count();
+        assert!(
+            off <= if has_grid { tests.values.len() / 20 } else { 0 },
+            "case {index}: {off} of {}",
+            tests.values.len()
+        );
+    }
+    gpu.set_tuning(own).unwrap();
+}
+
+/// By hand: a ball that fills the picture, a light that it faces, and every effect.
+#[test]
+fn counts_are_those_by_hand() {
+    let Some(gpu) = gpu("aov::counts_are_those_by_hand") else { return };
+    let ball = "SPHERE s 0 0 -5 20 20 1 1 1 1 0 0.5 0 KR 1\nLIGHT l 0 0 9 1 1 1\n";
+    for (kr, rays, tests) in [("0", 2.0, 2.0), ("0.5", 3.0, 4.0)] {
+        let mut scene = scene_of(&ball.replace("KR", kr));
+        (scene.width, scene.height) = (16, 16);
+        let settings = Settings { max_depth: 1, ..Settings::exact() };
+        for &tier in gpu.ladder() {
+            // One test for the primary ray, one for the shadow; the only sphere twice for the mirrored ray.
+            let [[found_rays, found], _] = counted(&gpu, tier, &scene, &settings, &Request::Exactly(EffectSet::ALL));
+            let all_are = |layer: &Layer, expected| layer.values.iter().all(|&x| x == expected);
+            assert!(all_are(&found_rays, rays), "{kr} at {tier}: {:?}", found_rays.values);
+            assert!(all_are(&found, tests), "{kr} at {tier}: {:?}", found.values);
+        }
+    }
+}
+
 /// Pixels that the picture has from the reference have its numbers.
 #[test]
 fn what_the_reference_decides_is_told_by_it() {
@@ -349,8 +431,8 @@ fn what_the_reference_decides_is_told_by_it() {
     let (settings, middle) = (Settings::classic(), 4 * 8 + 4);
     let expected = layers_of(&scene, &settings, &TOLD).unwrap();
     let viewed = scene.viewed(&settings);
-    let mut device = DeviceLayers::new(&gpu, Tier::Robust, &viewed, &Effects::of(&viewed)).unwrap();
-    let found = device.layers(&inspector(&scene, &settings).0, &TOLD).unwrap();
+    let mut device = DeviceLayers::new(&gpu, Tier::Robust, &viewed, &Effects::of(&viewed), &TOLD).unwrap();
+    let found = device.layers(&inspector(&scene, &settings).0).unwrap().unwrap();
     for (layer, expected) in found.iter().zip(&expected) {
         let at = middle * layer.channels()..(middle + 1) * layer.channels();
         assert_eq!(layer.values[at.clone()], expected.values[at], "{}", layer.name);

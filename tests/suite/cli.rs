@@ -36,6 +36,15 @@ fn a_picture_is_shown_in_the_terminal() {
     assert_eq!((shown.lines().count(), shown.matches('▀').count()), (4, 16 * 4), "{shown}");
     assert!(shown.starts_with("\x1b[38;2;0;0;255m\x1b[48;2;0;0;255m▀"), "{shown:?}");
     assert!(place.files().contains(&"out.ppm".to_owned()));
+    assert_eq!(stdout(place.run("render --device cpu --show=blocks scene.txt")), shown);
+    let sixels = stdout(place.run("render --device cpu --show=sixel scene.txt"));
+    assert!(sixels.starts_with("\x1bP0;1;0q\"1;1;16;8#0;2;0;0;100") && sixels.ends_with("\x1b\\\n"), "{sixels:?}");
+    assert!(stdout(place.run("render --device cpu --show=kitty scene.txt")).starts_with("\x1b_Ga=T,f=100,"));
+    assert_exit(
+        &place.run("render --device cpu --show=ascii scene.txt"),
+        2,
+        "possible values: auto, blocks, kitty, sixel",
+    );
     assert_exit(&place.run("render --device cpu scene.txt -o - --show"), 2, "--show prints to standard output");
 }
 

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde_json::{Value, json, to_value};
 use trueray::effects::Effect;
 use trueray::sampling::{Density, Fovea};
-use trueray::viewer::{EffectTimes, PageMessage, PageRequest, PickedHit, PickedPixel, SampledPart, SceneError};
+use trueray::viewer::{EffectTimes, PageMessage, PageRequest, SampledPart, SceneError};
 
 use crate::view::{SCENE, Work};
 
@@ -17,22 +17,23 @@ fn text(path: &str) -> String {
 /// A message of each kind, none of whose fields is absent, under the name that the scripts give it.
 fn messages() -> BTreeMap<&'static str, Value> {
     let work = Work::new(SCENE, false);
-    let mut state = work.page().finish();
+    let mut page = work.page();
+    let mut state = page.finish();
+    page.send(r#"{"do":"pick","x":45,"y":35}"#);
+    let pixel = page.until(|words| words["is"] == "pixel");
     let fovea = Some(Fovea { center: [1.0, 2.0], radius: 3.0, falloff: 4.0 });
     let sampled = SampledPart { pixels: 7, density: Density { fovea, far: 0.5 } };
     state["sampled"] = to_value(sampled).unwrap();
     state["error"] = to_value(SceneError { line: 9, text: "LAMP".into() }).unwrap();
     state["problem"] = "the depth is 1000 at the most".into();
-    let hit = PickedHit { sphere: 0, name: "a", t: 8.0, position: [0.0; 3], inside: false };
-    let pixel =
-        PageMessage::Pixel(PickedPixel { x: 1, y: 2, rgb: Some([3; 3]), hit: Some(hit), table: Some(String::new()) });
     let cost = EffectTimes { effect: Effect::Shadows, with_ms: 2.0, without_ms: 1.0 };
     let told = |message: &PageMessage| to_value(message).unwrap();
     BTreeMap::from([
         ("row", state["effects"][0].clone()),
         ("before", state.clone()),
         ("state", state),
-        ("pixel", told(&pixel)),
+        ("table", pixel["table"].clone()),
+        ("pixel", pixel),
         ("report", told(&PageMessage::Costs { effects: &[cost] })),
         ("cost", to_value(cost).unwrap()),
         ("measured", to_value(cost).unwrap()),

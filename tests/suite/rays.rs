@@ -11,8 +11,16 @@ use trueray::tuning::Tuning;
 
 use crate::support::{gpu, scene, scene_files, scene_of};
 
-const COUNTED: Options =
-    Options { certified: false, linear: false, terms: false, count_rays: true, device_clock: false, pixel_ms: None };
+const COUNTED: Options = Options {
+    certified: false,
+    linear: false,
+    terms: false,
+    one_ray: false,
+    count_rays: true,
+    count_tests: false,
+    device_clock: false,
+    pixel_ms: None,
+};
 
 /// The rays of the whole picture, and the picture.
 fn counted(backend: Backend, scene: &Scene, settings: &Settings, effects: &Effects) -> (Rays, Vec<u8>) {

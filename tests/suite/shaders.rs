@@ -76,6 +76,8 @@ fn specialisation(variant: &Variant, effects: EffectSet, flags: usize) -> Specia
         certified,
         linear: variant.samples && count_rays,
         count_rays,
+        count_tests: !count_rays,
+        one_ray: shared_surfaces,
         workgroup: 64,
         dispatch_tiles: 8,
     }

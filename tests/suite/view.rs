@@ -459,9 +459,101 @@ fn a_pixel_says_what_it_shows() {
     assert_eq!(pixel["hit"]["position"], serde_json::json!([0.0, 0.0, -8.0]));
     let start = (35 * 90 + 45) * 3;
     assert_eq!(pixel["rgb"], serde_json::json!(page.rgb[start..start + 3]));
-    assert!(pixel["table"].as_str().unwrap().contains("sphere 'a' (0) from outside at t 8\n"), "{pixel}");
+    assert!(pixel["table"]["text"].as_str().unwrap().contains("sphere 'a' (0) from outside at t 8\n"), "{pixel}");
     page.send(r#"{"do":"pick","x":0,"y":0}"#);
     assert!(page.until(|words| words["is"] == "pixel")["hit"].is_null());
+}
+
+/// What `trueray pixel` prints with these options, of the scene that `work` shows.
+fn of_command(work: &Work, options: &str, [x, y]: [u32; 2], device: &str, more: &[&str]) -> String {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_trueray"));
+    command.arg("pixel").args(options.split_whitespace()).arg(&work.render_loop.scene_file.path);
+    let output = command.args([x.to_string(), y.to_string()]).args(["--device", device]).args(more).output().unwrap();
+    assert!(output.status.success(), "{options}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// For the eye and the settings that the page shows, all that the command tells: rays, tiers, colours, how far they are off.
+#[test]
+fn the_table_of_a_pixel_is_that_of_the_command() {
+    for device in ["cpu", "gpu"] {
+        if device == "gpu" && gpu("view::the_table_of_a_pixel_is_that_of_the_command").is_none() {
+            continue;
+        }
+        let work = Work::new(SCENE, device == "gpu");
+        let mut page = work.page();
+        for (message, place) in [
+            (r#"{"do":"reset"}"#, [40, 30]),
+            (r#"{"do":"orbit","right":0.4,"up":0.2}"#, [45, 35]),
+            (r#"{"do":"choose","convention":"exact","spp":4,"effects":"-shadows","res":"61x33"}"#, [31, 17]),
+            (r#"{"do":"choose","spp":1,"max_depth":0}"#, [0, 0]),
+        ] {
+            page.send(message);
+            let version = page.session.view().0;
+            let state = page.until(|words| words["finished"] == true && words["version"] == version);
+            let [x, y] = place;
+            page.send(&format!(r#"{{"do":"pick","x":{x},"y":{y}}}"#));
+            let pixel = page.until(|words| words["is"] == "pixel");
+            assert_eq!(pixel["table"]["waits"], device == "gpu", "{message}");
+            let found =
+                if device == "gpu" { page.until(|words| words["is"] == "tiers") } else { pixel["table"].clone() };
+            assert_eq!(found["waits"], false);
+            assert_eq!(found["tiers"].as_array().unwrap().len(), if device == "gpu" { 3 } else { 0 }, "{found}");
+
+            // Of this very pixel.
+            for (tier, c) in found["tiers"].as_array().unwrap().iter().flat_map(|tier| [0, 1, 2].map(|c| (tier, c))) {
+                let [color, expected] = [&tier["color"], &found["color"]].map(|color| color[c].as_f64().unwrap());
+                assert!((color - expected).abs() < 1e-3, "{message}: {tier} for {expected}");
+            }
+            let options = state["options"].as_str().unwrap();
+            let json: Value = serde_json::from_str(&of_command(&work, options, place, device, &["--json"])).unwrap();
+            for field in ["single", "device", "tiers", "lacking"] {
+                assert_eq!(found[field], json[field], "{message}: {field}");
+            }
+            for field in ["color", "levels", "decisions"] {
+                assert_eq!(found[field], json["reference"][field], "{message}: {field}");
+            }
+            let without_device = |text: &str| -> Vec<String> {
+                text.lines().filter(|line| !line.starts_with("device ")).map(str::to_owned).collect()
+            };
+            let text = of_command(&work, options, place, device, &[]);
+            assert_eq!(without_device(found["text"].as_str().unwrap()), without_device(&text), "{message}");
+        }
+    }
+}
+
+/// A tier that the device does not render at says why; one whose `f64` are pairs of `f32` says so.
+#[test]
+fn tiers_that_a_device_lacks_are_told() {
+    let test = "view::tiers_that_a_device_lacks_are_told";
+    if gpu(test).is_none() {
+        return;
+    }
+    let work = work_with(start(), || {
+        let mut gpu = Gpu::open(&Choice::Auto)?;
+        gpu.device.info.f64 = false;
+        Ok(Some(Arc::new(gpu)))
+    });
+    let mut page = work.page();
+    page.finish();
+    page.send(r#"{"do":"pick","x":45,"y":35}"#);
+    let found = page.until(|words| words["is"] == "tiers");
+    let tiers = found["tiers"].as_array().unwrap();
+    let of = |tier: &str| tiers.iter().find(|found| found["tier"] == tier).unwrap_or_else(|| panic!("{found}"));
+    assert_eq!((&of("fast")["pairs"], &of("double")["pairs"]), (&false.into(), &true.into()));
+    assert!(found["text"].as_str().unwrap().contains("by pairs of f32: the device has no f64\n"), "{found}");
+    // Beyond f32: no tier without f64.
+    work.edit(&SCENE.replace("SPHERE b 4 4 -10 1 2 1", "SPHERE b 4e60 4e60 -1e61 1e60 2e60 1e60"));
+    page.until(|words| words["is"] == "state" && !words["problem"].is_null());
+    page.send(r#"{"do":"pick","x":45,"y":35}"#);
+    let found = page.until(|words| words["is"] == "tiers");
+    let lacking = found["lacking"].as_array().unwrap();
+    assert_eq!((lacking.len(), found["tiers"].as_array().unwrap().len()), (3, 0), "{found}");
+    for tier in lacking {
+        let why = tier["why"].as_str().unwrap();
+        assert!(why.contains("cannot render this scene"), "{why}");
+    }
+    assert_eq!(found["text"].as_str().unwrap().matches(" not on this device: ").count(), 3, "{found}");
 }
 
 #[test]
@@ -639,6 +731,11 @@ fn a_large_scene_is_shown_in_part_and_then_whole() {
     page.send(r#"{"do":"orbit","right":0.2,"up":0.1}"#);
     page.finish();
     assert_eq!(page.rgb, rendered(None, &scene(&text), &page.session.view().1));
+    // Its pixels are told without a table of all rays, and why.
+    page.send(r#"{"do":"pick","x":32,"y":24}"#);
+    let pixel = page.until(|words| words["is"] == "pixel");
+    assert_eq!((&pixel["table"], pixel["hit"].is_null()), (&Value::Null, false), "{pixel}");
+    assert_eq!(pixel["no_table"], "the scene has more than 20000 spheres");
 }
 
 /// The lights of particles turn with the eye, as those of `trueray render --eye` do.

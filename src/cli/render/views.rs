@@ -152,7 +152,7 @@ fn check(args: &Args) -> Result<(), Failure> {
         (args.scenes.len() > 1, "several scenes: the views file has a column `scene`"),
         (args.certificate.is_some(), "--certificate"),
         (args.aov.is_given(), "--aov"),
-        (args.show, "--show"),
+        (args.show.is_some(), "--show"),
         (args.sampling.is_given(), "--foveate or --sparse"),
         (args.part.is_part(), "--crop or --tile"),
     ];

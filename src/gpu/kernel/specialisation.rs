@@ -48,6 +48,10 @@ pub struct Specialisation {
     pub linear: bool,
     /// Whether each pixel also says how many rays it took.
     pub count_rays: bool,
+    /// Whether each pixel says how many tests of a ray with a sphere it took, and not how many rays.
+    pub count_tests: bool,
+    /// Whether pixels show what one mirrored or refracted ray adds.
+    pub one_ray: bool,
     /// Invocations of a workgroup of the kernels that are not over tiles.
     pub workgroup: u32,
     /// Tiles of a dispatch at the most.
@@ -77,6 +81,8 @@ impl Specialisation {
             certified: false,
             linear: false,
             count_rays: false,
+            count_tests: false,
+            one_ray: false,
             workgroup: tuning.workgroup,
             dispatch_tiles: dispatch_tiles(UNIFORM),
         }
@@ -101,6 +107,11 @@ impl Specialisation {
         };
         let sphere_count = if secondary == Secondary::Large { grid.large().len() as u32 } else { 0 };
         Self { secondary, sphere_count, schedule, ..self }
+    }
+
+    /// Whether each pixel says a number of rays or of tests.
+    pub(crate) fn counts(&self) -> bool {
+        self.count_rays || self.count_tests
     }
 
     /// What decides the text of its kernels.
@@ -145,6 +156,8 @@ impl Specialisation {
             ("SIDE", f64::from(self.side)),
             ("PARALLEL", f64::from(self.parallel)),
             ("COUNT_RAYS", f64::from(self.count_rays)),
+            ("COUNT_TESTS", f64::from(self.count_tests)),
+            ("ONE_RAY", f64::from(self.one_ray)),
             ("TANGENTS", f64::from(self.kernel.tells_tangents())),
             ("CERTIFIED", f64::from(self.certified)),
             ("LINEAR", f64::from(self.linear)),

@@ -52,7 +52,7 @@ impl GpuRenderer<'_, Pixels> {
                 continue;
             }
             rendered.add(statuses.checked(&self.gpu.device)?);
-            self.add_rays(&work, end - start, |_| true)?;
+            self.add_counts(&work, end - start, |place| Some(list[start + place]))?;
             self.work = Some(work);
             self.set_pace((end - start).div_ceil(TILE_PIXELS), took);
             start = end;

@@ -86,8 +86,7 @@ pub(super) fn place_means(words: &[u32], is_double: bool, tiles: &[[u32; 2]], ar
             let [x, y] = [left + place % TILE, top + place / TILE];
             if area.has([x, y]) {
                 let [r, g, b, coverage] = std::array::from_fn(|at| number(&mean[at * per_number..][..per_number]));
-                let at = (y - area.top) as usize * area.width as usize + (x - area.left) as usize;
-                linear[at] = Linear { color: DVec3::new(r, g, b), coverage };
+                linear[area.index([x, y])] = Linear { color: DVec3::new(r, g, b), coverage };
             }
         }
     }

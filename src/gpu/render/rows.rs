@@ -51,13 +51,41 @@ impl GpuRenderer<'_, Rows> {
     /// [`Error::Misuse`] where these are no rows of it, or the renderer was not prepared with [`terms`](super::Options::terms).
     pub fn terms(&mut self, term: Term, first: u32, values: &mut [Linear]) -> Result<Rendered, Error> {
         check_colors(values.len(), if self.has_terms() { values.len() } else { 0 })?;
-        self.term = term.words();
+        self.asked = term.words();
         let rendered = self.linear_rows(first, &mut vec![0; 3 * values.len()], values)?;
         if term != Term::Background {
-            // Where no sphere is near, nothing is dispatched.
-            values.iter_mut().filter(|value| value.coverage == 0.0).for_each(|value| value.color = DVec3::ZERO);
+            darken_background(values);
         }
         Ok(rendered)
+    }
+
+    /// What mirrored or refracted ray `number`, from 1 on in the order in which they are followed, adds to the pixels of rows `first` on.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Misuse`] where these are no rows of it, or the renderer was not prepared for [`one_ray`](super::Options::one_ray).
+    pub fn ray(&mut self, number: u32, first: u32, values: &mut [Linear]) -> Result<Rendered, Error> {
+        check_colors(values.len(), if self.inputs.specialisation.one_ray { values.len() } else { 0 })?;
+        self.asked = [number, 0];
+        let rendered = self.linear_rows(first, &mut vec![0; 3 * values.len()], values)?;
+        darken_background(values);
+        Ok(rendered)
+    }
+
+    /// How many shadow and reflection rays the pixels of so many rows from `first` on take, or how many tests shadow rays and all others:
+    /// what the renderer was prepared to count, of all samples of a pixel together. Where no sphere is near, it is nothing.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Misuse`] where these are no rows of it.
+    pub fn counts(&mut self, first: u32, count: u32) -> Result<(Vec<[u64; 2]>, Rendered), Error> {
+        let Area { top, width, .. } = self.area();
+        let area = Area { top: top + first, height: count, ..self.area() };
+        let pixels = width as usize * count as usize;
+        self.counted = Some((area, vec![[0; 2]; pixels]));
+        let rendered = self.rows(first, &mut vec![0; 3 * pixels]);
+        let (_, counts) = self.counted.take().unwrap_or_default();
+        rendered.map(|rendered| (counts, rendered))
     }
 
     /// `linear` is empty where it is not wanted.
@@ -107,10 +135,10 @@ impl GpuRenderer<'_, Rows> {
             if !linear.is_empty() {
                 self.read_means(&work, now, area, linear)?;
             }
-            self.add_rays(&work, now.len() * TILE_PIXELS, |place| {
+            self.add_counts(&work, now.len() * TILE_PIXELS, |place| {
                 let ([left, top], place) = (now[place / TILE_PIXELS], (place % TILE_PIXELS) as u32);
                 // A tile may reach beyond the picture, or into pixels that are not asked for.
-                area.has([left + place % TILE, top + place / TILE])
+                Some([left + place % TILE, top + place / TILE]).filter(|&pixel| area.has(pixel))
             })?;
             self.work = Some(work);
             self.set_pace(now.len(), took);
@@ -139,4 +167,9 @@ impl GpuRenderer<'_, Rows> {
         self.times.read_back += start.elapsed();
         Ok(statuses)
     }
+}
+
+/// Where no sphere is near, nothing is dispatched, and a pixel has the background.
+fn darken_background(values: &mut [Linear]) {
+    values.iter_mut().filter(|value| value.coverage == 0.0).for_each(|value| value.color = DVec3::ZERO);
 }

@@ -62,7 +62,7 @@ impl Work {
         let pixel_count = u64::from(capacity) * TILE_PIXELS as u64;
         let slots = pixel_count * u64::from(specialisation.samples);
         let pixels = Readable::new(device, pixel_count);
-        let ray_counts = Readable::new(device, if specialisation.count_rays { slots * RAY_COUNT_SIZE / 4 } else { 2 });
+        let ray_counts = Readable::new(device, if specialisation.counts() { slots * RAY_COUNT_SIZE / 4 } else { 2 });
         let number = specialisation.color_size() / 4;
         let means = Readable::new(device, if specialisation.linear { pixel_count * number } else { number });
         let paths = specialisation.path_size() * if specialisation.keeps_paths() { slots } else { 1 };

@@ -297,6 +297,8 @@ impl<'a> Prober<'a> {
             certified: false,
             linear: false,
             count_rays: false,
+            count_tests: false,
+            one_ray: false,
             workgroup: 64,
             samples: 1,
             side: 1,

@@ -1,15 +1,12 @@
 //! What a page asks for besides a picture: a pixel, a file, a measurement.
 
-use super::coarse::{coarse_engine, framed};
-use super::reduced::MANY_SPHERES;
+use super::coarse::coarse_engine;
 use super::{Context, FRAME_MS, SessionRenderer};
-use crate::cpu::{Inspector, MOST_RAYS, picked};
 use crate::engine::{Backend, Engine, Options};
 use crate::film::encode_png;
 use crate::gpu;
-use crate::report::{Labels, pixel_table};
 use crate::viewer::effect_cost::CostMeasurement;
-use crate::viewer::messages::{PageMessage, PickedHit, PickedPixel};
+use crate::viewer::messages::PageMessage;
 use crate::viewer::patch::PICTURE_FILE;
 
 impl SessionRenderer<'_> {
@@ -30,7 +27,7 @@ impl SessionRenderer<'_> {
             (one_shots.pick.take(), save)
         });
         if let Some(pixel) = pick {
-            self.send_pixel(pixel, context);
+            self.inspect(pixel, context);
         }
         if save {
             let (width, height) = self.canvas.size();
@@ -44,37 +41,6 @@ impl SessionRenderer<'_> {
                 None => {}
             }
         }
-    }
-
-    fn send_pixel(&self, (x, y): (u32, u32), context: &mut Context) {
-        let Some(job) = &self.job else { return };
-        let (width, height) = job.size;
-        if x >= width || y >= height {
-            return;
-        }
-        let rgb = self.canvas.complete().map(|rgb| {
-            let start = (y as usize * width as usize + x as usize) * 3;
-            [rgb[start], rgb[start + 1], rgb[start + 2]]
-        });
-        let (hit, record) = framed(context.scene, job.framing(), |scene| {
-            let viewed = scene.viewed(&job.settings);
-            let is_quick = scene.spheres.len() <= MANY_SPHERES;
-            let inspector = is_quick.then(|| Inspector::new(&viewed, &job.effects));
-            let inspector = inspector.filter(|inspector| inspector.rays(x, y) <= MOST_RAYS);
-            let record = inspector.and_then(|inspector| inspector.pixel(x, y));
-            (picked(&viewed, x, y), record)
-        });
-        let labels = Labels::of(context.scene, job.settings.specular);
-        let table = record.map(|record| pixel_table(&record, labels));
-        let names = &context.scene.sphere_names;
-        let hit = hit.map(|hit| PickedHit {
-            sphere: hit.sphere,
-            name: names.get(hit.sphere),
-            t: hit.t,
-            position: hit.position.to_array(),
-            inside: hit.inside,
-        });
-        self.session.send(&PageMessage::Pixel(PickedPixel { x, y, rgb, hit, table }));
     }
 
     /// Takes the next step of a measurement, if there is one.
