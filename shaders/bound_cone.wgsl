@@ -24,10 +24,8 @@ var<private> bound_exit: real;
 var<private> bound_is_exit_near: bool;
 var<private> bound_is_blocked: bool;
 var<private> bound_may_be_blocked: bool;
-// Error of the unit normal of the surface in hand; of the light in hand that of N.L, and that of the direction to it.
+// Error of the unit normal of the surface in hand.
 var<private> bound_normal: real;
-var<private> bound_cosine: real;
-var<private> bound_light: real;
 // Weight of the ray in hand.
 var<private> bound_weight: real;
 // How far the colour may be off, and the sizes of all its terms but a first product of constants: of the channels the greatest. Before
@@ -125,10 +123,10 @@ fn is_edge(at: Approach, body: Body, t: real, width: real, reach: real) -> bool 
     return !(abs(at.discriminant) > edge);
 }
 
-// How near to its surface the start of the ray has to lie for its side to be in doubt.
-fn near_of(body: Body) -> real {
-    let width = bound_width(body, real(0.0));
-    return NEAR * width * (body.shape.center_radius.w + width);
+// How near to a surface the end of a ray, squared, has to lie for its side to be in doubt: the width at the closest approach, which
+// `reach` is of, does for that of the end.
+fn near_of(reach: real) -> real {
+    return real(0.5) * NEAR * reach;
 }
 
 // A sphere is met from t on; where that is in doubt, it counts as two. The same one counts once, however often it is listed.
@@ -159,7 +157,7 @@ fn note_other(ray: Ray, body: Body, range: Range, is_other: bool, starts: bool, 
     if starts {
         // The squared distance of the place where roots begin to count.
         let start = dot(at.origin, at.origin) - radius * radius - range.t_min * (at.b + at.b - range.t_min * at.a);
-        let is_near = !(abs(start) > near_of(body)) & !(at.discriminant < -reach);
+        let is_near = !(abs(start) > near_of(reach)) & !(at.discriminant < -reach);
         let is_outside = start > real(0.0);
         let is_behind = at.b <= at.a * range.t_min;
         counts = (counts & (!is_behind | !is_outside) & (is_outside | range.greater)) | is_near;
@@ -171,9 +169,23 @@ fn note_other(ray: Ray, body: Body, range: Range, is_other: bool, starts: bool, 
     bound_error = max(bound_error, select(real(0.0), reach * inv_a, counts & !is_doubt));
 }
 
-// A primary ray has been tested with a sphere.
-fn note_seen(ray: Ray, body: Body, range: Range) {
-    note_other(ray, body, range, true, SHELLS, true);
+// A primary ray has been tested with a sphere, which `nearest` does not count yet.
+fn note_seen(ray: Ray, body: Body, range: Range, root: Root, nearest: Hit) {
+    if SHELLS {
+        note_other(ray, body, range, true, true, true);
+    } else {
+        let at = approach(ray, body);
+        let radius = body.shape.center_radius.w;
+        let inv_a = select(ray.inv_a, real(1.0) / at.a, ELLIPSOIDS);
+        let closest = at.b * inv_a;
+        let width = bound_width(body, closest);
+        let reach = reach_of(width, radius);
+        let edge = max(closest - radius * sqrt(inv_a), range.t_min);
+        let doubtful = select(FAR, edge, is_edge(at, body, closest, width, reach));
+        let later = max(select(FAR, root.t, root.counts), nearest.t);
+        bound_second = min(bound_second, min(doubtful, later));
+        bound_error = max(bound_error, reach * inv_a);
+    }
 }
 
 // A secondary ray has been tested with any sphere.
@@ -235,7 +247,7 @@ fn note_crossed(ray: Ray, body: Body, exit: Exit, t_min: real) {
     let reach = reach_of(width, radius);
     let start = at.origin + at.direction * t_min;
     let end = at.origin + at.direction;
-    let near = near_of(body);
+    let near = near_of(reach);
     let is_near = !(abs(dot(start, start) - radius * radius) > near) | !(abs(dot(end, end) - radius * radius) > near);
     let passes = (at.b > at.a * t_min) & (at.b < at.a);
     let is_crossed = ((passes & is_edge(at, body, closest, width, reach)) | is_near) & !(at.discriminant < -reach);
@@ -254,6 +266,7 @@ fn note_surface(ray: Ray, body: Body, scale: vec3r, local: vec3r, hit: Hit) {
     let at = approach(ray, body);
     let radius = body.shape.center_radius.w;
     let center = body.shape.center_radius.xyz;
+    let inv_length = sqrt(select(ray.inv_a, real(1.0) / at.a, ELLIPSOIDS));
     // |D local|, the gradient in the world of half the squared distance from the centre.
     var gradient = radius;
     var greatest = real(1.0);
@@ -264,18 +277,24 @@ fn note_surface(ray: Ray, body: Body, scale: vec3r, local: vec3r, hit: Hit) {
     }
     // From the place itself: kernels that do not keep t know it.
     let way = local - at.origin;
-    let t = sqrt(dot(way, way) / at.a);
-    let world = bound_base + t * bound_slope + center_error(body);
-    let far = t * sqrt(at.a);
+    let far = sqrt(dot(way, way));
+    var along = far * (bound_direction + bound_place());
+    if ELLIPSOIDS {
+        along = far / sqrt(at.a) * bound_slope;
+    }
+    let world = bound_base + along + center_error(body);
     let rounding = bound_place() * far + bound_local() * radius;
     let stretched = stretch_of(body) * world + rounding;
     let reach = real(2.0) * (gradient * world + radius * rounding + stretched * stretched);
     let rest = at.discriminant - reach;
     is_unsure |= hit.found & !(rest > real(0.0));
     // w/|N.d| with N.d = sqrt(a discriminant)/|g|, of the least discriminant.
-    let slant = sqrt(ray.a / (at.a * rest));
+    var slant = real(1.0) / sqrt(rest);
+    if ELLIPSOIDS {
+        slant *= sqrt(ray.a / at.a);
+    }
     // How far the closest approach, and so the hit, is off along the ray is seen from the former: it is at right angles to the ray.
-    let shifted = greatest * (abs(dot(at.perpendicular, at.direction)) / sqrt(at.a) + ROUNDOFF * (LENGTH + ANGLE) * radius);
+    let shifted = greatest * (abs(dot(at.perpendicular, at.direction)) * inv_length + ROUNDOFF * (LENGTH + ANGLE) * radius);
     let aside = slant * (real(0.5) * reach);
     // Along the ray a normal of a sphere turns by no more than where the ray is aslant.
     let aslant = select(sqrt(max(real(1.0) - at.discriminant / (radius * radius), real(0.0))), real(1.0), ELLIPSOIDS);
@@ -325,37 +344,44 @@ fn note_background() {
     add_bound(largest(abs(params.background)), real(0.0), true);
 }
 
-// A light in hand, before anything comes of it.
-fn note_light(surface: Surface, light: Light, to_light: Ray, material: Material, n_dot_l: real, is_seen: bool) {
-    let place = ROUNDOFF * ANGLE * (size_of(light.position) + size_of(surface.position)) + params.moved;
-    bound_light = (bound_position + place) / sqrt(to_light.a) + ROUNDOFF * ANGLE;
-    let angle = bound_normal + bound_light;
-    // cos changes by sin da + da^2/2, and with the lengths of both unit vectors.
-    let sine = sqrt(max(real(1.0) - n_dot_l * n_dot_l, real(0.0)));
-    bound_cosine = sine * angle + angle * angle + ROUNDOFF * (real(2.0) * LENGTH + ANGLE) * abs(n_dot_l);
+// Error of the direction to the light in hand.
+fn light_error(surface: Surface, at: Incidence) -> real {
+    let place = ROUNDOFF * ANGLE * (size_of(at.light.position) + size_of(surface.position)) + params.moved;
+    return (bound_position + place) * at.inv_distance + ROUNDOFF * ANGLE;
+}
+
+// A light in hand, before anything comes of it: whether the surface faces it. cos changes by no more than the angle and its square, and
+// with the lengths of both unit vectors.
+fn note_light(surface: Surface, at: Incidence, material: Material, is_seen: bool) {
+    let angle = bound_normal + light_error(surface, at);
+    let error = angle + angle * angle + ROUNDOFF * (real(2.0) * LENGTH + ANGLE) * abs(at.n_dot_l);
     let shows = (material.kd != real(0.0)) | (material.ks != real(0.0));
     // NaN is in doubt.
-    is_unsure |= is_seen & shows & (!(angle < LOST) | !(abs(n_dot_l) > bound_cosine));
+    is_unsure |= is_seen & shows & (!(angle < LOST) | !(abs(at.n_dot_l) > error));
 }
 
 // The light's terms.
-fn note_lit(surface: Surface, light: Light, material: Material, to_light: vec3r, n_dot_l: real, is_lit: bool) {
+fn note_lit(surface: Surface, at: Incidence, material: Material, is_lit: bool) {
+    let direction = light_error(surface, at);
     var size = real(0.0);
     var error = real(0.0);
     if DIFFUSE {
-        size = largest(abs(light.intensity * material.color)) * abs(material.kd);
-        error = size * bound_cosine;
+        size = largest(abs(at.light.intensity * material.color)) * abs(material.kd);
+        let angle = bound_normal + direction;
+        // cos changes by sin da + da^2/2, and with the lengths of both unit vectors.
+        let sine = sqrt(max(real(1.0) - at.n_dot_l * at.n_dot_l, real(0.0)));
+        error = size * (sine * angle + angle * angle + ROUNDOFF * (real(2.0) * LENGTH + ANGLE) * abs(at.n_dot_l));
     }
     if SPECULAR {
-        var angle = real(2.0) * bound_normal + bound_light + bound_direction + ROUNDOFF * (real(4.0) * LENGTH + ANGLE);
+        var angle = real(2.0) * bound_normal + direction + bound_direction + ROUNDOFF * (real(4.0) * LENGTH + ANGLE);
         if BLINN {
             // The sum of two unit vectors turns by what they turn and by what is wrong in their lengths, over its own.
-            let sum = to_light + surface.view;
-            let parts = bound_light + bound_direction + ROUNDOFF * (real(2.0) * LENGTH + ANGLE);
+            let sum = at.to_light + surface.view;
+            let parts = direction + bound_direction + ROUNDOFF * (real(2.0) * LENGTH + ANGLE);
             angle = bound_normal + parts / sqrt(dot(sum, sum)) + ROUNDOFF * (real(2.0) * LENGTH + ANGLE);
         }
-        let intensity = largest(abs(light.intensity));
-        let d = specular_distance(surface, to_light, n_dot_l);
+        let intensity = largest(abs(at.light.intensity));
+        let d = specular_distance(surface, at.to_light, at.n_dot_l);
         let specular = intensity * abs(material.ks);
         let power = specular_power(d, material.n);
         size += specular * power;

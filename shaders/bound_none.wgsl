@@ -7,7 +7,7 @@ fn begin_search(ray: Ray) {}
 
 fn begin_secondary(ray: Ray, own: Own, exit: Exit, range: Range) {}
 
-fn note_seen(ray: Ray, body: Body, range: Range) {}
+fn note_seen(ray: Ray, body: Body, range: Range, root: Root, nearest: Hit) {}
 
 fn note_tested(ray: Ray, body: Body, exit: Exit, range: Range) {}
 
@@ -25,9 +25,9 @@ fn note_ambient(material: Material, is_seen: bool) {}
 
 fn note_background() {}
 
-fn note_light(surface: Surface, light: Light, to_light: Ray, material: Material, n_dot_l: real, is_seen: bool) {}
+fn note_light(surface: Surface, at: Incidence, material: Material, is_seen: bool) {}
 
-fn note_lit(surface: Surface, light: Light, material: Material, to_light: vec3r, n_dot_l: real, is_lit: bool) {}
+fn note_lit(surface: Surface, at: Incidence, material: Material, is_lit: bool) {}
 
 fn note_reflected(throughput: real) {}
 

@@ -7,7 +7,7 @@
 
 // N.L and whether something stands before the light, or what the light adds.
 fn term_of_light(surface: Surface, material: Material) -> vec3r {
-    let at = incidence_of(asked.y, surface, material, true);
+    let at = incidence_of(asked.y, surface);
     let is_faced = at.n_dot_l > real(0.0);
     var is_blocked = false;
     if SHADOWS {

@@ -31,8 +31,9 @@ fn nearest_seen(ray: Ray, pixel: vec2<u32>) -> Hit {
         loop {
             let sphere = entry_at(at);
             let body = body_of(sphere);
-            nearest = nearer_root(nearest, other_root(ray, body, range), sphere);
-            note_seen(ray, body, range);
+            let root = other_root(ray, body, range);
+            note_seen(ray, body, range, root, nearest);
+            nearest = nearer_root(nearest, root, sphere);
             if COUNT_TESTS {
                 other_tests++;
             }

@@ -56,18 +56,19 @@ struct Incidence {
     light: Light,
     // To the light, for the shadow.
     ray: Ray,
+    // One over its length.
+    inv_distance: real,
     // Unit vector.
     to_light: vec3r,
     n_dot_l: real,
 }
 
-fn incidence_of(index: u32, surface: Surface, material: Material, is_seen: bool) -> Incidence {
+fn incidence_of(index: u32, surface: Surface) -> Incidence {
     let light = light_of(index);
     let ray = ray_to_light(surface.position, light, index);
-    let to_light = direction_of(ray) * (real(1.0) / sqrt(ray.a));
-    let n_dot_l = dot(surface.normal, to_light);
-    note_light(surface, light, ray, material, n_dot_l, is_seen);
-    return Incidence(light, ray, to_light, n_dot_l);
+    let inv_distance = real(1.0) / sqrt(ray.a);
+    let to_light = direction_of(ray) * inv_distance;
+    return Incidence(light, ray, inv_distance, to_light, dot(surface.normal, to_light));
 }
 
 fn ambient_light(material: Material) -> vec3r {
@@ -85,7 +86,7 @@ fn specular_light(at: Incidence, surface: Surface, material: Material) -> vec3r 
 
 // A colour and, where it reaches the surface, the light with this index, which the surface faces.
 fn with_light(color: vec3r, index: u32, surface: Surface, material: Material) -> vec3r {
-    let at = incidence_of(index, surface, material, true);
+    let at = incidence_of(index, surface);
     var lit = color;
     if DIFFUSE {
         lit += diffuse_light(at, material);
@@ -101,7 +102,7 @@ fn with_light(color: vec3r, index: u32, surface: Surface, material: Material) ->
         }
         is_lit = !any_hit(at.ray, surface.own, at.light, index);
     }
-    note_lit(surface, at.light, material, at.to_light, at.n_dot_l, is_lit);
+    note_lit(surface, at, material, is_lit);
     return select(color, lit, is_lit);
 }
 
@@ -114,7 +115,8 @@ fn faced_lights(first: u32, surface: Surface, material: Material, is_seen: bool)
     var faced = 0u;
     var bit = 0u;
     loop {
-        let at = incidence_of(first + bit, surface, material, is_seen);
+        let at = incidence_of(first + bit, surface);
+        note_light(surface, at, material, is_seen);
         // Not lit from behind, and not by a light at distance 0, where N.L is NaN.
         faced |= select(0u, 1u << bit, is_seen & (at.n_dot_l > real(0.0)));
         bit++;

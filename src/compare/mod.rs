@@ -17,7 +17,7 @@ use serde::Serialize;
 use crate::film::Picture;
 use crate::words::count;
 
-pub use explain::{Explanation, UnexplainedPixel};
+pub use explain::{Explanation, UnexplainedPixel, Widths};
 pub use flip::PIXELS_PER_DEGREE;
 pub use heatmap::{Band, SCALE, heatmap, three_wide};
 pub use metrics::{Metrics, SSIM_WINDOW};

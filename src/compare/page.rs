@@ -6,8 +6,8 @@ use maud::{Markup, PreEscaped, html};
 
 use super::heatmap::pixel_heat;
 use super::{
-    Band, BySphere, Difference, Explanation, Metrics, PIXELS_PER_DEGREE, SCALE, SSIM_WINDOW, SizeMismatch, heatmap,
-    level, value, worst_places,
+    Band, BySphere, Difference, Explanation, Metrics, PIXELS_PER_DEGREE, SCALE, SSIM_WINDOW, SizeMismatch, Widths,
+    heatmap, level, value, worst_places,
 };
 use crate::film::{Picture, encode_png};
 use crate::mistakes::{CUT_SHORT, Cause, Diagnosis, Example, Role};
@@ -220,7 +220,13 @@ fn decisions(explanation: &Explanation) -> Markup {
             dt { "Judged as" } dd { (explanation.judged_as.to_string()) }
             dt { "Differing" } dd { (explanation.differing) }
             @for (decision, pixels) in &explanation.explained { dt { (decision.name()) } dd { (pixels) } }
+            @if let Some(Widths { median, greatest }) = explanation.widths {
+                dt { "Margins" } dd { (format!("{median:.1e} levels in the median, {greatest:.1e} at most")) }
+            }
             dt { "Unexplained" } dd { b { (explanation.unexplained) } }
+            @if explanation.unexplained > 0 {
+                dt { "Proven" } dd { (explanation.proven) " of the first thousand are beyond all roundings that there are, added up" }
+            }
             @if explanation.undecided > 0 {
                 dt { "Undecided" } dd { (explanation.undecided) " of them have more paths than are tried" }
             }

@@ -156,7 +156,7 @@ impl<T: Real, const PROOF: bool> Bound<T, PROOF> {
 
     /// Half the width of the cone at `t`, in the object space of `shape`, with the rounding on the way there.
     #[inline]
-    fn width(&self, shape: &Shape<T>, t: T) -> T {
+    pub(super) fn width(&self, shape: &Shape<T>, t: T) -> T {
         largest(shape.inv_scale) * (self.base + t.abs() * self.slope + self.center * size(shape.center))
             + self.local * shape.radius
     }
@@ -181,13 +181,6 @@ impl<T: Real, const PROOF: bool> Bound<T, PROOF> {
         let world = self.base + t.abs() * self.slope + self.center * size(shape.center);
         let rounding = self.place * (t.abs() * at.a.sqrt()) + self.local * shape.radius;
         two::<T>() * (length(gradient) * world + length(at.perpendicular) * rounding + width * width)
-    }
-
-    /// How near to its surface the start of the ray has to lie for its side to be in doubt.
-    #[inline]
-    pub(super) fn near(&self, shape: &Shape<T>) -> T {
-        let width = self.width(shape, T::ZERO);
-        T::from_f64(NEAR) * width * (shape.radius + width)
     }
 
     /// Whether it is in doubt that the line meets the sphere.
@@ -337,9 +330,7 @@ impl<T: Real, const PROOF: bool> Witness<T> for Bound<T, PROOF> {
         let radius_squared = shape.radius * shape.radius;
         // The squared distance of the place where roots begin to count.
         let start = at.origin.dot(at.origin) - radius_squared - range.t_min * (at.b + at.b - range.t_min * at.a);
-        // In a proof the width at the closest point does for the start.
-        let near = if PROOF { T::from_f64(0.5 * NEAR) * reach } else { self.near(shape) };
-        let is_near = !(start.abs() > near);
+        let is_near = !(start.abs() > near(reach));
         let is_behind = at.b <= at.a * range.t_min;
         if !is_near && is_behind && (start > T::ZERO || !range.greater) {
             return;
@@ -391,8 +382,7 @@ impl<T: Real, const PROOF: bool> Witness<T> for Bound<T, PROOF> {
         if at.discriminant < -reach {
             return false;
         }
-        let near = if PROOF { T::from_f64(0.5 * NEAR) * reach } else { self.near(shape) };
-        let is_near = |squared: T| !((squared - shape.radius * shape.radius).abs() > near);
+        let is_near = |squared: T| !((squared - shape.radius * shape.radius).abs() > near(reach));
         let passes = at.b > at.a * t_min && at.b < at.a;
         if (passes && self.is_edge(shape, at, reach)) || is_near(*start_squared) || is_near(*end_squared) {
             self.may_be_blocked = true;
@@ -596,6 +586,12 @@ impl<T: Real, const PROOF: bool> Witness<T> for Bound<T, PROOF> {
             (self.cone, self.throughput) = (cone, throughput);
         }
     }
+}
+
+/// How near to a surface the end of a ray, squared, has to lie for its side to be in doubt: the width at the closest approach, which
+/// `reach` is of, does for that of the end.
+fn near<T: Real>(reach: T) -> T {
+    T::from_f64(0.5 * NEAR) * reach
 }
 
 /// The least component.

@@ -29,12 +29,21 @@ pub enum Finding {
 #[derive(Debug, Clone, Copy)]
 pub struct Judge {
     tier: Tier,
+    /// Whether it counts every rounding, where many cancel in fact.
+    is_strict: bool,
 }
 
 impl Judge {
     /// For the kernel of `tier`; where a device has no `f64`, [`Tier::Robust`] judges [`Tier::Double`].
     pub fn of(tier: Tier) -> Self {
-        Self { tier }
+        Self { tier, is_strict: false }
+    }
+
+    /// One who counts every rounding of the worst case: what it does not explain no rounding does, to the order of its bounds. It explains
+    /// a few in a hundred of the pixels that small mistakes make wrong, too.
+    #[must_use]
+    pub fn strict(self) -> Self {
+        Self { is_strict: true, ..self }
     }
 
     /// The tier whose rounding explains pixels.
@@ -45,7 +54,9 @@ impl Judge {
     /// Judges pictures of `reference`'s scene.
     pub fn trial<'a>(&self, reference: &'a Reference<f64>) -> Trial<'a> {
         let world = &reference.world;
-        Trial { reference, roundoff: Roundoff::of(self.tier), surfaces: Surfaces::of(world), gamut: Gamut::of(world) }
+        let roundoff = Roundoff::of(self.tier);
+        let roundoff = if self.is_strict { roundoff.counted() } else { roundoff };
+        Trial { reference, roundoff, surfaces: Surfaces::of(world), gamut: Gamut::of(world) }
     }
 }
 
@@ -74,6 +85,16 @@ impl Trial<'_> {
     /// Whether rounding explains `color`, another renderer's unclamped colour of pixel (column `i`, row `j`).
     pub fn explain_color(&self, i: u32, j: u32, color: DVec3) -> Finding {
         self.explain_value([i, j], Value::Color(color))
+    }
+
+    /// How far rounding may move the colour of pixel (column `i`, row `j`) where it changes no decision: the width of an interval around
+    /// it, in 8-bit levels, of the channels the greatest.
+    pub fn width(&self, i: u32, j: u32) -> f64 {
+        let primaries: Vec<_> = self.reference.primaries(i, j).collect();
+        let width =
+            |primary| Paths::new(self, primary).next().map_or(DVec3::ZERO, |own| own.shade.high - own.shade.low);
+        let sum: DVec3 = primaries.iter().map(width).sum();
+        sum.max_element() / primaries.len() as f64 * self.reference.quantize.scale()
     }
 
     fn explain_value(&self, [i, j]: [u32; 2], value: Value) -> Finding {

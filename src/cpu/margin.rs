@@ -13,6 +13,7 @@ use super::shade::max;
 use super::vec3::{Vec3, largest, length};
 use crate::camera::Camera;
 use crate::precision::Tier;
+use crate::roundings;
 
 /// Roundings of a place on the way into object space: of inputs, and of what is calculated from them.
 const PLACE: f64 = 2.0;
@@ -44,6 +45,13 @@ impl Roundoff {
             Tier::Double => (53, 53),
         };
         Self { shading: 0.5_f64.powi(shading), geometry: 0.5_f64.powi(geometry) }
+    }
+
+    /// With every rounding that `src/roundings.rs` counts: no count here, which are of what adds up in fact, is smaller by more than this
+    /// factor, that of the roundings of a place on its way into the object space of an ellipsoid.
+    pub(super) fn counted(self) -> Self {
+        const MORE: f64 = (roundings::PLACE + roundings::AXES) / PLACE;
+        Self { shading: MORE * self.shading, geometry: MORE * self.geometry }
     }
 
     /// Whether shading is in `f32`.

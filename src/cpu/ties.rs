@@ -12,7 +12,7 @@ use super::scene::{PointLight, Shape, World};
 use super::shade::{LightTerms, Surface, min};
 use super::vec3::length;
 use super::witness::Witness;
-use crate::roundings::TIE;
+use crate::roundings::{NEAR, TIE};
 
 /// Traces in double-double, with its bound, and takes for a tie what that leaves open.
 #[derive(Debug)]
@@ -41,7 +41,8 @@ impl Ties {
 
     /// How near to its surface a place has to lie to be on it, for all that is known.
     fn near(&self, shape: &Shape<Dd>) -> Dd {
-        min(self.bound.near(shape), Dd::from(TIE))
+        let width = self.bound.width(shape, Dd::ZERO);
+        min(Dd::from(NEAR) * width * (shape.radius + width), Dd::from(TIE))
     }
 
     /// The least root that counts.

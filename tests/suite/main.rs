@@ -41,6 +41,7 @@ mod lists;
 mod magnitudes;
 mod masked;
 mod messages;
+mod missed;
 mod misuse;
 mod oracle;
 #[cfg(feature = "view")]

@@ -134,6 +134,32 @@ fn what_holds_the_tables_changes_no_byte() {
     }
 }
 
+/// Quotients and square roots that are some units in the last place off, as Vulkan allows and beyond: corrected, the same bytes.
+#[test]
+fn a_device_that_divides_badly_gives_the_same_bytes() {
+    let Some(usual) = gpu("a_device_that_divides_badly_gives_the_same_bytes") else { return };
+    let off = |units_off| {
+        let mask = Mask { units_off, ..Mask::default() };
+        Gpu::with(Device::masked(&Choice::Gpu, &mask).unwrap()).unwrap().keeping_kernels(KEPT)
+    };
+    // So bad that nothing is corrected.
+    let [bad, worse, hopeless] = [2, 8, 100].map(off);
+    let mut changed = 0;
+    for (name, scene, settings) in all_subjects().filter(|(name, ..)| SOME.contains(&name.as_str())) {
+        let effects = Effects::of(&scene.viewed(&settings));
+        for tier in Tier::ALL.into_iter().filter(|&tier| usual.kernel(tier).is_ok()) {
+            let (expected, _) = gpu_picture(&usual, tier, &scene, &settings, &effects);
+            for (gpu, units) in [(&bad, 2), (&worse, 8)] {
+                let (picture, _) = gpu_picture(gpu, tier, &scene, &settings, &effects);
+                assert!(picture == expected, "{name} at {tier}, {units} units off");
+            }
+            let (picture, _) = gpu_picture(&hopeless, tier, &scene, &settings, &effects);
+            changed += usize::from(picture != expected);
+        }
+    }
+    assert!(changed > 0, "quotients change nothing");
+}
+
 #[test]
 fn a_limit_that_is_too_small_is_named() {
     if gpu("a_limit_that_is_too_small_is_named").is_none() {

@@ -25,9 +25,35 @@ pub struct Device {
     pub(crate) takes_spirv: bool,
     /// So many units in the last place its quotients and square roots are made too small.
     pub(crate) units_off: u32,
+    /// Of which numbers they are known not to be rounded correctly.
+    pub(crate) inexact: Inexact,
     failure: Arc<Mutex<Option<Failure>>>,
     /// Why nothing can be asked of it any more.
     end: OnceLock<String>,
+}
+
+/// Of which numbers quotients and square roots are not rounded correctly, as far as that is known.
+#[derive(Debug, Default)]
+pub(crate) struct Inexact {
+    single: OnceLock<bool>,
+    double: OnceLock<bool>,
+}
+
+impl Inexact {
+    /// Whether those of numbers of so many bits are known to be.
+    pub(crate) fn has(&self, bits: u32) -> bool {
+        self.known(bits == 64).get() == Some(&true)
+    }
+
+    /// Whether those of any are.
+    pub(crate) fn is_any(&self) -> bool {
+        [false, true].map(|is_double| self.known(is_double).get()).contains(&Some(&true))
+    }
+
+    /// What is known of `f64`, or else of `f32`.
+    pub(crate) fn known(&self, is_double: bool) -> &OnceLock<bool> {
+        if is_double { &self.double } else { &self.single }
+    }
 }
 
 /// What a device has reported.
@@ -108,7 +134,17 @@ impl Device {
         device.set_device_lost_callback(move |_, message| note(&slot, Failure::Broken(message)));
         let mappable = features.contains(wgpu::Features::MAPPABLE_PRIMARY_BUFFERS);
         let takes_spirv = features.contains(wgpu::Features::PASSTHROUGH_SHADERS);
-        Ok(Self { info, raw: device, queue, mappable, takes_spirv, units_off, failure, end: OnceLock::new() })
+        Ok(Self {
+            info,
+            raw: device,
+            queue,
+            mappable,
+            takes_spirv,
+            units_off,
+            inexact: Inexact::default(),
+            failure,
+            end: OnceLock::new(),
+        })
     }
 
     /// Gives the device up: whatever is still asked of it fails as lost.

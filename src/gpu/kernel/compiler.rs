@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use super::bindings::Binding;
 use super::cache::KernelCache;
+use super::correct::corrected;
 use super::inexact::made_inexact;
 use super::spirv::ParsedModule;
 use crate::gpu::device::error::Error;
@@ -37,6 +38,9 @@ impl Compiler<'_> {
             }
             (bindings, module.spirv(&specialised, entry_point).map_err(Error::Shader)?)
         };
+        if self.device.inexact.is_any() {
+            words = corrected(words, |bits| self.device.inexact.has(bits)).map_err(Error::Shader)?;
+        }
         if self.device.units_off > 0 {
             words = made_inexact(words, self.device.units_off).map_err(Error::Shader)?;
         }

@@ -5,6 +5,8 @@ pub(crate) mod bindings;
 pub mod cache;
 pub(crate) mod compiler;
 mod compose;
+mod constants;
+mod correct;
 pub(crate) mod entry;
 mod inexact;
 mod inline;

@@ -14,6 +14,9 @@ use crate::gpu::shared::SMALL_GROUP;
 use crate::random::Random;
 use crate::roundings::QUOTIENT_UNITS;
 
+/// Half a unit, and what measuring it takes.
+const HALF: f64 = 0.500001;
+
 /// Numbers that are divided.
 const PAIRS: usize = 1 << 16;
 
@@ -56,6 +59,11 @@ impl Quotients {
         Ok(measured)
     }
 
+    /// Whether all are rounded correctly.
+    pub fn are_exact(&self) -> bool {
+        self.quotient <= HALF && self.root <= HALF
+    }
+
     /// Whether the bounds of certified pictures count with errors so great.
     pub fn are_counted(&self) -> bool {
         self.quotient <= QUOTIENT_UNITS && self.root <= QUOTIENT_UNITS
@@ -63,11 +71,33 @@ impl Quotients {
 }
 
 impl Gpu {
+    /// Finds out whether the device rounds quotients and square roots in the numbers of `kernel` correctly; kernels that are compiled
+    /// from then on correct what it does not. With one driver it is measured once.
+    pub(super) fn settle_quotients(&self, kernel: Kernel) -> Result<(), Error> {
+        let known = self.device.inexact.known(kernel.is_double());
+        // What wgpu translates cannot be corrected.
+        if known.get().is_some() || !self.device.takes_spirv {
+            return Ok(());
+        }
+        let module = Module::quotients(kernel);
+        let [exact, inexact] = ["exact-quotients", "inexact-quotients"].map(|name| Record::of(self, name, &module));
+        let is_exact = if exact.has_passed() || inexact.has_passed() {
+            exact.has_passed()
+        } else {
+            let is_exact = Quotients::measure(self, kernel)?.are_exact();
+            if is_exact { exact } else { inexact }.keep();
+            is_exact
+        };
+        let _ = known.set(!is_exact);
+        Ok(())
+    }
+
     /// Refuses certified pictures by `kernel` where this device calculates worse than their bounds count with; one that does not is not
     /// measured again with this driver.
     pub(crate) fn certifies(&self, kernel: Kernel) -> Result<(), Error> {
+        let is_exact = self.device.inexact.known(kernel.is_double()).get() == Some(&false);
         let record = Record::of(self, "quotients", &Module::quotients(kernel));
-        if record.has_passed() {
+        if is_exact || record.has_passed() {
             return Ok(());
         }
         let measured = Quotients::measure(self, kernel)?;

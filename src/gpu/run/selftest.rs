@@ -69,12 +69,14 @@ impl SelfTest {
 impl Gpu {
     /// The kernel that keeps the promise of `tier` on this device; a refusal says why there is none.
     pub fn kernel(&self, tier: Tier) -> Result<Kernel, Error> {
-        match tier {
-            Tier::Fast => Ok(Kernel::Tier(tier)),
-            Tier::Robust => SelfTest::require(self).map(|()| Kernel::Tier(tier)),
-            Tier::Double if self.device.info.f64 => Ok(Kernel::Tier(tier)),
-            Tier::Double => SelfTest::require(self).map(|()| Kernel::Pairs),
-        }
+        let kernel = match tier {
+            Tier::Fast => Kernel::Tier(tier),
+            Tier::Robust => SelfTest::require(self).map(|()| Kernel::Tier(tier))?,
+            Tier::Double if self.device.info.f64 => Kernel::Tier(tier),
+            Tier::Double => SelfTest::require(self).map(|()| Kernel::Pairs)?,
+        };
+        self.settle_quotients(kernel)?;
+        Ok(kernel)
     }
 }
 
