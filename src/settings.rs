@@ -149,6 +149,7 @@ pub struct Settings {
     pub pattern: Pattern,
 }
 
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde passes it so")]
 fn plain<S: Serializer>(pattern: &Pattern, serializer: S) -> Result<S::Ok, S::Error> {
     pattern.plain().serialize(serializer)
 }

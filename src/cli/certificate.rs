@@ -40,7 +40,9 @@ impl<'a> CertificateFile<'a> {
         match begun.bits {
             Bits::Eight => begun.picture.add(rgb),
             Bits::Sixteen => {
-                linear.iter().for_each(|pixel| begun.picture.add_deep(begun.quantize.levels16(pixel.color)));
+                for pixel in linear {
+                    begun.picture.add_deep(begun.quantize.levels16(pixel.color));
+                }
             }
         }
     }

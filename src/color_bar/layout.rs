@@ -133,7 +133,7 @@ impl Layout {
         let title_width = font.width(letters.len());
         let (bar, title_left) = match side {
             Side::Right | Side::Left => {
-                let top = (height - length + title_height) / 2;
+                let top = (height - length).midpoint(title_height);
                 let left = if side == Side::Left { margin } else { width - margin - across };
                 // As far as it reaches beyond the bar, towards the middle of the picture.
                 let title_left = if side == Side::Left { left } else { left.min(width - margin - title_width) };
@@ -212,7 +212,7 @@ fn fitting(
 ) -> Result<Vec<Tick>, String> {
     for most in (2..=MOST_TICKS).rev() {
         let ticks = ticks(scale.range, most as u32)?;
-        let longest = ticks.iter().map(|tick| tick.label.len()).max().unwrap_or(0) as i64;
+        let longest = ticks.iter().map(|tick| tick.label.len()).max().unwrap_or(0).cast_signed() as i64;
         let needed = room((longest + 2) * letter, line);
         let places: Vec<_> = ticks.iter().map(|tick| (tick.part * length as f64) as i64).collect();
         if places.windows(2).all(|pair| (pair[1] - pair[0]).abs() >= needed) {

@@ -80,7 +80,8 @@ impl ColorBar {
         let width = self.width as usize;
         let bounds = self.layout.bounds;
         let first = i64::from(first);
-        let (top, bottom) = (bounds.top.max(first), bounds.bottom.min(first + (rgb.len() / 3 / width) as i64));
+        let (top, bottom) =
+            (bounds.top.max(first), bounds.bottom.min(first + (rgb.len() / 3 / width).cast_signed() as i64));
         if top >= bottom {
             return;
         }

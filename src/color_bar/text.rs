@@ -26,12 +26,12 @@ impl Font {
 
     /// Height of a line in pixels.
     pub(super) fn line(self) -> i64 {
-        self.raster.val() as i64 * self.times
+        self.raster.val().cast_signed() as i64 * self.times
     }
 
     /// Width of `letters` letters in pixels.
     pub(super) fn width(self, letters: usize) -> i64 {
-        get_raster_width(FontWeight::Regular, self.raster) as i64 * self.times * letters as i64
+        (get_raster_width(FontWeight::Regular, self.raster) * letters).cast_signed() as i64 * self.times
     }
 
     /// From the top of a line to the middle of its digits.
@@ -39,7 +39,7 @@ impl Font {
         let has_ink = |row: &[u8]| row.iter().any(|&ink| ink > 0);
         let rows =
             || glyph('0', self.raster).into_iter().flat_map(|glyph| glyph.rows().enumerate().collect::<Vec<_>>());
-        let inked = || rows().filter(|(_, row)| has_ink(row)).map(|(at, _)| at as i64);
+        let inked = || rows().filter(|(_, row)| has_ink(row)).map(|(at, _)| at.cast_signed() as i64);
         let (first, last) = (inked().min().unwrap_or(0), inked().max().unwrap_or(0));
         (first + last + 1) * self.times / 2
     }

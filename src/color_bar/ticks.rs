@@ -73,13 +73,14 @@ fn scientific(value: i64, exponent: i32) -> String {
     }
     let sign = if value < 0 { "-" } else { "" };
     let digits = value.unsigned_abs().to_string();
-    let power = exponent + digits.len() as i32 - 1;
+    let power = exponent + (digits.len() as u32).cast_signed() - 1;
     let (first, rest) = digits.split_at(1);
     let rest = rest.trim_end_matches('0');
     if rest.is_empty() { format!("{sign}{first}e{power}") } else { format!("{sign}{first}.{rest}e{power}") }
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by it")]
 mod tests {
     use super::*;
 

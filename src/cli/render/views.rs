@@ -196,7 +196,7 @@ fn render(args: &Args, prepared: Result<Option<Prepared>, Failure>, hand_on: &mu
         Err(failure) => return hand_on(Step::Failed(failure)),
     };
     let number = stats.frame.unwrap_or_default();
-    hand_on(Step::Begin { number, target, coding, note, levels, bar, size: engine.size() });
+    hand_on(Step::Begin { number, target, coding, note, levels, bar: bar.map(Box::new), size: engine.size() });
     let rendered = render_bands(&mut engine, |band| {
         hand_on(Step::Rows { rgb: band.rgb.to_vec(), linear: band.linear.to_vec() });
         Ok::<_, gpu::Error>(())

@@ -15,7 +15,7 @@ use crate::random::Random;
 use crate::roundings::QUOTIENT_UNITS;
 
 /// Half a unit, and what measuring it takes.
-const HALF: f64 = 0.500001;
+const HALF: f64 = 0.500_001;
 
 /// Numbers that are divided.
 const PAIRS: usize = 1 << 16;

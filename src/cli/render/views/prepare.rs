@@ -72,7 +72,7 @@ impl Source {
         let file_size = [scene.width, scene.height];
         let size = size.map_or(file_size, <[u32; 2]>::from);
         let (window, kept) = (scene.window, Kept::default());
-        Self { name, window, size, file_size, scene, lamps, color_scale, kept, parse_time }
+        Self { name, scene, window, size, file_size, lamps, color_scale, kept, parse_time }
     }
 }
 

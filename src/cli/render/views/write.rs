@@ -30,7 +30,7 @@ pub(super) enum Step {
         coding: Coding,
         note: Option<String>,
         levels: (Quantize, DVec3),
-        bar: Option<ColorBar>,
+        bar: Option<Box<ColorBar>>,
         size: (u32, u32),
     },
     /// 3 bytes a pixel, and colours where the file has them.
@@ -82,7 +82,8 @@ impl<'a> Writer<'a> {
     pub(super) fn take(&mut self, step: Step) {
         match step {
             Step::Begin { number, target, coding, note, levels, bar, size } => {
-                let film = |target: &Target| Film::new(coding, target, size, note.as_deref(), levels, bar);
+                let film =
+                    |target: &Target| Film::new(coding, target, size, note.as_deref(), levels, bar.map(|bar| *bar));
                 let opened = self.open(number, &target, film);
                 self.file = self.noted(opened.map_err(|failure| failure.of(&frame_name(number))));
             }
