@@ -151,7 +151,11 @@ END
     wait_for grep -rq "ended as it was asked to" "$work/picture.png.parts"
     # A node goes down while it renders: its tile is rendered on the other.
     wait_for on_node b
-    kill -KILL "${started[2]}" $(on_node b)
+    # All at once: what ends first must not be reported by what ends later.
+    local all
+    all=$(on_node b)
+    kill -STOP "${started[2]}" $all
+    kill -KILL "${started[2]}" $all
     wait_for test -e "$work/picture.png" || { squeue; tail "$work"/*.log "$work"/*.parts/*.log; return 1; } >&2
 }
 
