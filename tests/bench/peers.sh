@@ -11,8 +11,8 @@
 # counts it, at the rounding of levels that the program has.
 #
 # From the environment: RUNS (5), THREADS (2, at most the number of cores), RES (1920x1080), FAMILIES (spheres) and MAX_SPHERES
-# (1000) of the scenes, PRECISION (auto), DEVICE (auto), TRUERAY (target/release/trueray), KEEP (a folder that keeps pictures and
-# exported scenes).
+# (1000) of the scenes, PRECISION (auto), DEVICE (auto), PEERS (povray tachyon embree), TRUERAY (target/release/trueray),
+# KEEP (a folder that keeps pictures and exported scenes), RAW (a CSV file of every run, with this machine in its head).
 set -eu
 
 root=$(cd "$(dirname "$0")/../.." && pwd)
@@ -24,6 +24,7 @@ threads=${THREADS:-2}
 res=${RES:-1920x1080}
 device=${DEVICE:-auto}
 precision=${PRECISION:-auto}
+wanted=${PEERS:-povray tachyon embree}
 
 if [ ! -x "$trueray" ]; then
     echo "there is no $trueray: build it with cargo build --release, or set TRUERAY" >&2
@@ -31,15 +32,6 @@ if [ ! -x "$trueray" ]; then
 fi
 # lavapipe and the CPU reference use as many threads as the others.
 export LP_NUM_THREADS="$threads" RAYON_NUM_THREADS="$threads"
-
-peers=
-for peer in povray tachyon; do
-    if command -v "$peer" >/dev/null; then
-        peers="$peers $peer"
-    else
-        echo "$peer: not installed, left out"
-    fi
-done
 
 if [ -n "${KEEP:-}" ]; then
     mkdir -p "$KEEP"
@@ -50,11 +42,24 @@ else
 fi
 
 log=$folder/embree.log
-if c++ -O3 -march=native -std=c++17 "$root/tests/bench/embree.cpp" -lembree3 -lpthread -o "$folder/embree" 2>"$log"; then
-    peers="$peers embree"
-else
-    echo "embree: cannot be compiled ($(grep -m 1 -E 'error|not found' "$log")), left out"
-fi
+peers=
+for peer in $wanted; do
+    if [ "$peer" != embree ] && ! command -v "$peer" >/dev/null; then
+        echo "$peer: not installed, left out"
+    elif [ "$peer" = embree ] && ! c++ -O3 -march=native -std=c++17 "$root/tests/bench/embree.cpp" -lembree3 -lpthread \
+        -o "$folder/embree" 2>"$log"; then
+        echo "embree: cannot be compiled ($(grep -m 1 -E 'error|not found' "$log")), left out"
+    else
+        peers="$peers $peer"
+    fi
+done
+
+raw=${RAW:-/dev/null}
+{
+    echo "# $("$trueray" -V), $res, $threads threads, precision $precision, device $device, $runs runs in turn after one that warms up"
+    echo "# $(uname -sm), $(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1), $cores cores, $(date -u +%F)"
+    echo "scene,program,what,run,ms"
+} >"$raw"
 
 now() { date +%s%N; }
 since() { echo "$1 $(now)" | awk '{ printf "%.3f\n", ($2 - $1) / 1e6 }'; }
@@ -117,6 +122,7 @@ row() { # name, what stands behind its first line
             echo "  $1 reported no $what time"
             continue
         fi
+        awk -v row="$name,$1,$what" '{ print row "," NR "," $1 }' "$file" >>"$raw"
         ratio=
         if [ "$1" != trueray ] && [ "$what" != prepare ]; then
             ratio=$(echo "$(median "$file") $(median "$folder/trueray.$what")" | awk '{ printf "× %.2f", $1 / $2 }')

@@ -1,5 +1,7 @@
-//! What the documents say: their links lead somewhere, and the program understands the commands that they show.
+//! What the documents say: their links lead somewhere, the program understands the commands that they show, and tables of speed are of
+//! runs that are kept.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -89,4 +91,42 @@ fn every_kind_of_test_is_explained() {
 fn the_readme_is_short() {
     let lines = std::fs::read_to_string(root().join("README.md")).unwrap().lines().count();
     assert!(lines <= 150, "{lines}");
+}
+
+/// What a table calls a scene: a number of spheres with or without commas, or a name.
+fn scene_name(name: &str) -> String {
+    name.replace(['`', ','], "").trim_start_matches("spheres-").to_owned()
+}
+
+/// Each row is a scene, with the medians of preparing and tracing, and behind them of the whole process.
+#[test]
+fn tables_of_speed_are_of_runs_that_are_kept() {
+    let tables: [(_, _, &[_]); 2] = [
+        ("README.md", "spheres.csv", &["trueray", "embree", "tachyon", "povray"]),
+        ("tests/bench/README.md", "domes.csv", &["trueray", "embree"]),
+    ];
+    for (document, runs, programs) in tables {
+        let read = |name: &str| std::fs::read_to_string(root().join(name)).unwrap();
+        let (text, runs) = (read(document), read(&format!("tests/bench/runs/{runs}")));
+        let mut times = BTreeMap::<_, Vec<f64>>::new();
+        for line in runs.lines().filter(|line| !line.starts_with('#')).skip(1) {
+            let [scene, program, what, _, ms] = line.split(',').collect::<Vec<_>>().try_into().unwrap();
+            times.entry((scene_name(scene), program, what)).or_default().push(ms.parse().unwrap());
+        }
+        let median = |scene: &str, program, what| {
+            let mut runs = times[&(scene.to_owned(), program, what)].clone();
+            assert_eq!(runs.len(), 5, "{scene}, {program}, {what}");
+            runs.sort_by(f64::total_cmp);
+            runs[2]
+        };
+        let rows: Vec<Vec<_>> = text.lines().map(|line| line.trim_matches(['|', ' ']).split(" | ").collect()).collect();
+        let mut scenes: Vec<_> = times.keys().map(|(scene, ..)| scene).collect();
+        scenes.dedup();
+        for scene in scenes {
+            let time = |program| format!("{:.0} ({:.0})", median(scene, program, "both"), median(scene, program, "process"));
+            let expected: Vec<_> = programs.iter().copied().map(time).collect();
+            let is_there = rows.iter().any(|row| scene_name(row[0]) == *scene && row[1..] == expected);
+            assert!(is_there, "{document}: {scene} took {expected:?}");
+        }
+    }
 }
