@@ -123,7 +123,8 @@ fn tables_of_speed_are_of_runs_that_are_kept() {
         let mut scenes: Vec<_> = times.keys().map(|(scene, ..)| scene).collect();
         scenes.dedup();
         for scene in scenes {
-            let time = |program| format!("{:.0} ({:.0})", median(scene, program, "both"), median(scene, program, "process"));
+            let time =
+                |program| format!("{:.0} ({:.0})", median(scene, program, "both"), median(scene, program, "process"));
             let expected: Vec<_> = programs.iter().copied().map(time).collect();
             let is_there = rows.iter().any(|row| scene_name(row[0]) == *scene && row[1..] == expected);
             assert!(is_there, "{document}: {scene} took {expected:?}");
