@@ -1,6 +1,6 @@
 #!/bin/sh
 # Tests the live view in Chromium; installs what it needs where it can, and says so where it cannot. An argument is the
-# number of seconds for the soak, 20 without it.
+# number of seconds for the soak, 20 without it. TRUERAY is the program's path; without it it is built.
 set -eu
 cd "$(dirname "$0")"
 
@@ -39,7 +39,11 @@ if [ -n "$missing" ]; then
 fi
 npm ci --no-audit --no-fund || skip "npm ci cannot fetch playwright-core"
 
-cargo build --release --locked --manifest-path ../../Cargo.toml
-export NODEVICE_SELECT=1
+if [ -z "${TRUERAY:-}" ]; then
+    # As optimised as a release, and there where other tests ran; with the Python package dependencies have the features of those.
+    cargo build --locked --package trueray --package trueray-python --bin trueray
+    TRUERAY=$(cd ../.. && pwd)/target/debug/trueray
+fi
+export TRUERAY NODEVICE_SELECT=1
 npm test
 node soak.js "${1:-20}"
