@@ -73,6 +73,14 @@ impl Quantize {
         let scale = self.scale() + (65535.0 - 255.0);
         color.to_array().map(|c| (scale * c.clamp(0.0, 1.0) + self.bias()) as u16)
     }
+
+    /// The level of 8 bits of a colour whose level by this rule is `sample` of 0..=`most`; where both rules begin steps at other
+    /// places, that of the middle of its step.
+    pub fn narrowed(self, sample: u32, most: u32) -> u8 {
+        let scale = self.scale() + (f64::from(most) - 255.0);
+        let color = (f64::from(sample) + 0.5 - self.bias()) / scale;
+        (self.scale() * color + self.bias()) as u8
+    }
 }
 
 /// From where on shadow and reflection rays meet a surface. The one that they leave they meet at its analytic roots, 0 and −2B/A.

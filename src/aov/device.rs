@@ -32,6 +32,8 @@ pub struct DeviceLayers<'a> {
     rays: Option<GpuRenderer<'a>>,
     tests: Option<GpuRenderer<'a>>,
     samples: u32,
+    /// Whether any term needs lights.
+    is_lit: bool,
     quantize: Quantize,
     /// From the kernels' units to those of the file.
     eye: DVec3,
@@ -59,7 +61,8 @@ impl<'a> DeviceLayers<'a> {
         let of_hit = Effects { set, depth: 0, ..effects.clone() };
         let settings = viewed.settings();
         let samples = settings.pattern.count();
-        let told: Vec<Aov> = wanted.iter().copied().filter(|aov| aov.is_told(samples)).collect();
+        let is_lit = [Effect::Diffuse, Effect::Specular].iter().any(|&term| effects.set.has(term));
+        let told: Vec<Aov> = wanted.iter().copied().filter(|aov| aov.is_told(samples, is_lit)).collect();
         let renderer = |is_of: fn(Aov) -> bool, effects: &Effects, options: &Options| {
             let is_wanted = told.iter().any(|&aov| is_of(aov));
             is_wanted.then(|| GpuRenderer::with(gpu, viewed, effects, tier, options)).transpose()
@@ -79,6 +82,7 @@ impl<'a> DeviceLayers<'a> {
             tests: renderer(|aov| aov == Aov::Tests, effects, &count_tests)?,
             planes: planes(&told, viewed.scene().lights.len()),
             samples,
+            is_lit,
             quantize: settings.quantize,
             eye: viewed.in_file().1.view.eye,
             factor: viewed.factor(),
@@ -93,7 +97,7 @@ impl<'a> DeviceLayers<'a> {
 
     /// Whether a kernel tells it.
     pub fn tells(&self, aov: Aov) -> bool {
-        aov.is_told(self.samples)
+        aov.is_told(self.samples, self.is_lit)
     }
 
     /// The layers, in the order of [`Aov`]. The reference calculates the pixels of which rounding could decide what they show, as it does in

@@ -85,6 +85,15 @@ pub(super) fn planes(wanted: &[Aov], lights: usize) -> Vec<Plane> {
     sorted.iter().flat_map(|&aov| of_lights(aov).into_iter().map(move |number| Plane { aov, number })).collect()
 }
 
+/// The names of the layers of these kinds; of bounces, whose number the picture tells, of as many as there may be.
+pub fn names(wanted: &[Aov], lights: usize) -> Vec<String> {
+    let numbered = |plane: Plane| match plane.aov {
+        Aov::Bounce => (1..=MAX_BOUNCES).map(|number| Plane { number: Some(number), ..plane }).collect(),
+        _ => vec![plane],
+    };
+    planes(wanted, lights).into_iter().flat_map(numbered).map(Plane::name).collect()
+}
+
 /// One row of pixels.
 struct Row {
     /// Of each plane the values of all pixels.
@@ -157,10 +166,13 @@ fn pixel_of(rgb: &[u8], index: usize) -> [u8; 3] {
 }
 
 impl Plane {
+    fn name(self) -> String {
+        self.number.map_or_else(|| self.aov.name(), |number| format!("{}-{number}", self.aov))
+    }
+
     /// The layer before there are values.
     pub(super) fn layer(self, (width, height): (u32, u32)) -> Layer {
-        let name = self.number.map_or_else(|| self.aov.name(), |number| format!("{}-{number}", self.aov));
-        Layer { aov: self.aov, name, width, height, values: Vec::new() }
+        Layer { aov: self.aov, name: self.name(), width, height, values: Vec::new() }
     }
 
     /// Appends a pixel's values; `shown` is what the device shows.

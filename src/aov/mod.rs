@@ -12,7 +12,7 @@ use std::fmt;
 use clap::ValueEnum;
 
 pub use device::DeviceLayers;
-pub use layers::{Layer, MAX_BOUNCES, MAX_PIXELS, TooMany, layers};
+pub use layers::{Layer, MAX_BOUNCES, MAX_PIXELS, TooMany, layers, names};
 
 /// What a layer shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, ValueEnum)]
@@ -66,8 +66,9 @@ impl Aov {
         matches!(self, Self::NDotL | Self::Shadow | Self::Diffuse | Self::Specular)
     }
 
-    /// Whether a kernel tells it, of pixels with so many samples: means and sums of all, and of an only one the rest.
-    fn is_told(self, samples: u32) -> bool {
+    /// Whether a kernel tells it, of pixels with so many samples: means and sums of all, and of an only one the rest. Where no term needs
+    /// lights, the reference looks at none, and its cosines and shadows are 0.
+    fn is_told(self, samples: u32, is_lit: bool) -> bool {
         match self {
             Self::Color
             | Self::Background
@@ -76,14 +77,8 @@ impl Aov {
             | Self::Specular
             | Self::Rays
             | Self::Tests => true,
-            Self::T
-            | Self::Sphere
-            | Self::Inside
-            | Self::Position
-            | Self::Normal
-            | Self::NDotL
-            | Self::Shadow
-            | Self::Bounce => samples == 1,
+            Self::T | Self::Sphere | Self::Inside | Self::Position | Self::Normal | Self::Bounce => samples == 1,
+            Self::NDotL | Self::Shadow => samples == 1 && is_lit,
             Self::Margin | Self::Step | Self::Error => false,
         }
     }

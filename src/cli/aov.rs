@@ -9,7 +9,7 @@ use super::files::check_place;
 use super::guard::Guard;
 use super::named::check_replaced;
 use super::output::errln;
-use crate::aov::{Aov, DeviceLayers, Layer, TooMany, layers};
+use crate::aov::{Aov, DeviceLayers, Layer, TooMany, layers, names};
 use crate::cpu::Inspector;
 use crate::effects::Effects;
 use crate::engine::Backend;
@@ -114,6 +114,30 @@ impl AovOptions {
         guard.options([("--aov-file", &self.aov_file)])
     }
 
+    /// Refuses files beside the picture of a scene with so many lights that the run has another use for.
+    pub(super) fn check_names(&self, picture: &Path, lights: usize, guard: &Guard) -> Result<(), Failure> {
+        if self.aov.is_empty() || self.aov_file.is_some() {
+            return Ok(());
+        }
+        let names = names(&self.wanted(true), lights);
+        let files = self.aov_format.iter().flat_map(|format| match format {
+            AovFormat::Png => names.iter().map(|name| beside(picture, name, "png")).collect(),
+            AovFormat::Pfm => names.iter().map(|name| beside(picture, name, "pfm")).collect(),
+            AovFormat::Exr => vec![picture.with_extension("aov.exr")],
+        });
+        files.collect::<Vec<_>>().iter().try_for_each(|file| guard.check_free("--aov", file))
+    }
+
+    /// What is wanted, of a device or not.
+    fn wanted(&self, has_device: bool) -> Vec<Aov> {
+        let all = || Aov::value_variants().iter().copied().filter(|&aov| aov != Aov::Error || has_device);
+        let wanted = self.aov.iter().flat_map(|wanted| match wanted {
+            Wanted::All => all().collect(),
+            Wanted::One(aov) => vec![*aov],
+        });
+        wanted.collect()
+    }
+
     /// Refuses what cannot be written beside the picture.
     pub(super) fn check(&self, target: &Target) -> Result<(), Failure> {
         match target {
@@ -140,12 +164,7 @@ impl AovOptions {
         if self.aov.is_empty() {
             return Ok(None);
         }
-        let all = || Aov::value_variants().iter().copied().filter(|&aov| aov != Aov::Error || has_device);
-        let wanted = self.aov.iter().flat_map(|wanted| match wanted {
-            Wanted::All => all().collect(),
-            Wanted::One(aov) => vec![*aov],
-        });
-        let wanted: Vec<Aov> = wanted.collect();
+        let wanted = self.wanted(has_device);
         let picture = wanted.contains(&Aov::Error).then(Vec::new);
         let device = match (self.aov_from, backend) {
             (Source::Reference, _) => None,
@@ -208,10 +227,10 @@ impl Collector<'_> {
         for format in &self.formats {
             match format {
                 AovFormat::Png => {
-                    files.extend(layers.iter().map(|l| (beside(picture, l, "png"), Contents::Picture(l))));
+                    files.extend(layers.iter().map(|l| (beside(picture, &l.name, "png"), Contents::Picture(l))));
                 }
                 AovFormat::Pfm => {
-                    files.extend(layers.iter().map(|l| (beside(picture, l, "pfm"), Contents::Numbers(l))));
+                    files.extend(layers.iter().map(|l| (beside(picture, &l.name, "pfm"), Contents::Numbers(l))));
                 }
                 AovFormat::Exr => {
                     let file = self.file.clone().unwrap_or_else(|| picture.with_extension("aov.exr"));
@@ -289,8 +308,8 @@ impl Collector<'_> {
 const REFERENCE: &str = "the CPU reference";
 
 /// `scene.normal.png` beside `scene.png`.
-fn beside(picture: &Path, layer: &Layer, ending: &str) -> PathBuf {
-    picture.with_extension(format!("{}.{ending}", layer.name))
+fn beside(picture: &Path, name: &str, ending: &str) -> PathBuf {
+    picture.with_extension(format!("{name}.{ending}"))
 }
 
 /// What a file has.

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::failure::{Failure, OK, SCENE};
 use super::files::{check_place, json};
-use super::input::{Input, print_doubts};
+use super::input::{Input, check_stdin, print_doubts};
 use super::linear::FileFormat;
 use super::named::check_named;
 use super::options::PictureOptions;
@@ -143,6 +143,7 @@ fn named_doubt(scene: &Scene) -> Option<String> {
 }
 
 pub(super) fn run(args: &Args) -> Result<u8, Failure> {
+    check_stdin(&args.scenes)?;
     let settings = args.picture.settings()?;
     let reading = args.particles.one_frame(&args.picture)?;
     let mut summaries = Vec::new();

@@ -474,7 +474,7 @@ pub(super) fn open(path: &Path) -> Result<(String, Encoded), Failure> {
 
 /// Decodes a picture, which reports call `role`.
 fn decode(args: &Args, name: &str, encoded: Encoded, role: &str, remarks: &mut Remarks) -> Result<Picture, Failure> {
-    let leniency = if args.lenient { Leniency::Lenient } else { Leniency::Strict };
+    let leniency = if args.lenient { Leniency::Lenient(args.picture.settings()?.quantize) } else { Leniency::Strict };
     let reading = encoded.decode(leniency)?;
     for warning in &reading.warnings {
         if !args.json {

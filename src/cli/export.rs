@@ -54,6 +54,6 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
 fn refusal(peer: Peer, loaded: &Loaded, obstacles: &[Obstacle]) -> Failure {
     let in_scene = obstacles.iter().any(|obstacle| matches!(obstacle, Obstacle::Scene(_)));
     let list: String = obstacles.iter().map(|obstacle| format!("\n  {obstacle}")).collect();
-    let code = if in_scene { SCENE } else { USAGE };
-    Failure::new(code, format!("{}: {peer} cannot express this scene:{list}", loaded.name))
+    let (code, what) = if in_scene { (SCENE, "this scene") } else { (USAGE, "what the options ask for") };
+    Failure::new(code, format!("{}: {peer} cannot express {what}:{list}", loaded.name))
 }

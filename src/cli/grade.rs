@@ -127,7 +127,7 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
     ])?;
 
     let manner = Manner {
-        leniency: if args.lenient { Leniency::Lenient } else { Leniency::Strict },
+        leniency: if args.lenient { Leniency::Lenient(settings.quantize) } else { Leniency::Strict },
         explain: None,
         pages: args.html.is_some(),
     };

@@ -39,9 +39,22 @@ impl Guard {
     /// Refuses a file that the run reads, or that it also writes for another reason. `what` says what is
     /// to be written; `-` is standard output.
     pub(super) fn output(&mut self, what: &str, path: &Path) -> Result<(), Failure> {
+        if let Some(identity) = self.free(what, path)? {
+            self.outputs.insert(identity, what.to_owned());
+        }
+        Ok(())
+    }
+
+    /// The same of what may be written later.
+    pub(super) fn check_free(&self, what: &str, path: &Path) -> Result<(), Failure> {
+        self.free(what, path).map(drop)
+    }
+
+    /// What makes this the file that it is, where it is one and the run has no other use for it.
+    fn free(&self, what: &str, path: &Path) -> Result<Option<Identity>, Failure> {
         let identity = if path == Path::new("-") { of_stdout() } else { identity(path) };
         // What is no regular file, such as a device or a pipe, loses nothing.
-        let Some(identity) = identity else { return Ok(()) };
+        let Some(identity) = identity else { return Ok(None) };
         let name = if path == Path::new("-") { "standard output".into() } else { path.display().to_string() };
         let refused = |why: String| Err(Failure::new(OUTPUT, format!("{what} would overwrite {name}, {why}")));
         if let Some((_, input)) = self.inputs.iter().find(|(input, _)| *input == identity) {
@@ -55,8 +68,7 @@ impl Guard {
         if let Some(other) = self.outputs.get(&identity) {
             return refused(format!("which {other} writes"));
         }
-        self.outputs.insert(identity, what.to_owned());
-        Ok(())
+        Ok(Some(identity))
     }
 
     /// The same of what options name; it must also be possible to write it.

@@ -17,6 +17,14 @@ use crate::words::visible;
 /// So much of a file tells its format.
 const HEAD: u64 = 1 << 16;
 
+/// Refuses standard input where it would be read twice.
+pub(super) fn check_stdin(scenes: &[PathBuf]) -> Result<(), Failure> {
+    if scenes.iter().filter(|path| *path == Path::new("-")).count() > 1 {
+        return Err(Failure::new(USAGE, "only one of the scenes can be standard input"));
+    }
+    Ok(())
+}
+
 /// A file of which the beginning has been read.
 pub(super) struct Opened {
     /// Its name as the user gave it.

@@ -12,7 +12,7 @@ use super::color_bar::ColorBarOptions;
 use super::failure::{DEVICE_LOST, Failure, OK, STOPPED, USAGE};
 use super::files::{check_place, json, save};
 use super::guard::Guard;
-use super::input::{Loaded, print_doubts};
+use super::input::{Loaded, check_stdin, print_doubts};
 use super::linear::{Coding, FileFormat, Film, LinearOptions};
 use super::named::check_named;
 use super::options::{DeviceOptions, PictureOptions};
@@ -127,6 +127,7 @@ fn render_all(args: &Args) -> Result<u8, Failure> {
         (args.part.is_given(), "--crop, --tile or --resume, whose files are to be the pixels of the whole picture"),
     ];
     args.color_bar.check(args.particles.coloring(), &apart)?;
+    check_stdin(&args.scenes)?;
     if args.views.are_given() {
         return views::run(args);
     }
@@ -165,6 +166,9 @@ fn render_all(args: &Args) -> Result<u8, Failure> {
         scenes.into_iter().map(|loaded| loaded.map(|loaded| (target(args, &loaded), loaded))).collect();
     for (target, loaded) in scenes.iter().flatten() {
         guard.output(&format!("the picture of {}", loaded.name), target.argument())?;
+    }
+    for (target, loaded) in scenes.iter().flatten() {
+        args.aov.check_names(target.argument(), loaded.scene.lights.len(), &guard)?;
     }
     let jobs: Vec<_> =
         scenes.into_iter().map(|scene| scene.and_then(|(target, loaded)| job(args, loaded, target))).collect();

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 use super::failure::Failure;
 use super::files::{command, seconds};
 use super::guard::Guard;
-use super::input::Loaded;
+use super::input::{Loaded, check_stdin};
 use super::options::{DeviceOptions, PictureOptions, samples};
 use super::output::errln;
 use super::particles::Reading;
@@ -57,6 +57,7 @@ pub(super) struct Args {
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     args.device.check_tier()?;
+    check_stdin(&args.scenes)?;
     args.reports.check(&mut Guard::new(&args.scenes))?;
     let settings = args.picture.settings()?;
     let gpu = args.device.open()?;

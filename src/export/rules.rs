@@ -7,7 +7,7 @@ use super::{Obstacle, Peer};
 use crate::effects::{Effect, Effects};
 use crate::geometry::shape_indices;
 use crate::scene::{Scene, Sphere, Window};
-use crate::settings::{Quantize, Settings};
+use crate::settings::{Quantize, Secondary, Settings};
 use crate::view::Projection;
 
 /// POV-Ray finds no hit beyond this distance (its `MAX_DISTANCE`).
@@ -68,6 +68,7 @@ pub(super) fn judge(scene: &Scene, settings: &Settings, effects: &Effects, peer:
     let mut found = Found { scene, peer, obstacles: Vec::new(), warnings: Vec::new() };
     found.settings(settings);
     found.both(effects);
+    found.epsilon(&settings.secondary, effects);
     match peer {
         Peer::PovRay => found.povray(effects),
         Peer::Tachyon => found.tachyon(settings.view.projection(), effects),
@@ -141,6 +142,17 @@ impl Found<'_> {
                 self.peer
             ));
         }
+    }
+
+    /// What secondary rays pass over here alone shows where it is large beside a sphere.
+    fn epsilon(&mut self, secondary: &Secondary, effects: &Effects) {
+        let lights = self.scene.lights.iter().filter(|_| effects.set.has(Effect::Shadows));
+        let of_shadows = lights.map(|light| secondary.shadow * light.position.length());
+        let of_mirrors = [secondary.reflection].into_iter().filter(|_| effects.set.has(Effect::Reflections));
+        let passed = of_shadows.chain(of_mirrors).fold(0.0, f64::max);
+        let what =
+            format!("shadow and reflection rays pass over what is nearer than {passed:.1e}, but not in {}", self.peer);
+        self.warning(|s| s.scale.abs().min_element() < 10.0 * passed, &what);
     }
 
     fn povray(&mut self, effects: &Effects) {

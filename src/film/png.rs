@@ -106,7 +106,7 @@ fn decode_into(bytes: &[u8], leniency: Leniency, deep: Option<&mut Vec<u16>>) ->
     };
     match (end, leniency) {
         (Some((problem, _)), Leniency::Strict) => return Err(problem),
-        (Some((_, warning)), Leniency::Lenient) => warnings.insert(0, warning),
+        (Some((_, warning)), Leniency::Lenient(_)) => warnings.insert(0, warning),
         (None, _) => {}
     }
     Ok(Reading { picture: Picture::assemble(width, height, rgb), warnings, color_spaces: chunks.color_spaces })
@@ -189,7 +189,7 @@ fn pixels(
     if has_surplus(bytes, reader.info())? {
         match leniency {
             Leniency::Strict => return Err(Problem::mendable(SURPLUS)),
-            Leniency::Lenient => rows.warnings.push(Warning::PngSurplus),
+            Leniency::Lenient(_) => rows.warnings.push(Warning::PngSurplus),
         }
     }
     Ok((rows.rgb, rows.warnings))
@@ -292,7 +292,7 @@ impl<'d> Rows<'d> {
             8 => row[index].into(),
             _ => u16::from(row[index * depth / 8] >> (8 - depth - index * depth % 8)) & most as u16,
         };
-        let level = |sample: u16| ((u32::from(sample) * 255 + most / 2) / most) as u8;
+        let level = |sample: u16| self.leniency.level(sample.into(), most);
         Ok(match &self.kind {
             Kind::Grey { transparent } => {
                 let grey = sample(x);

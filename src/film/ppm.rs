@@ -100,8 +100,8 @@ impl Header {
     }
 
     /// A sample in range, from 0…maximum to 0…255.
-    fn scale(&self, value: u32) -> u8 {
-        if self.maximum == 255 { value as u8 } else { ((value * 255 + self.maximum / 2) / self.maximum) as u8 }
+    fn scale(&self, value: u32, leniency: Leniency) -> u8 {
+        if self.maximum == 255 { value as u8 } else { leniency.level(value, self.maximum) }
     }
 }
 
@@ -291,7 +291,7 @@ fn plain_samples(scanner: &mut Scanner, tally: &mut Tally) -> Result<Vec<u8>, Pr
 fn plain_sample(token: &[u8], place: FilePosition, index: usize, tally: &mut Tally) -> Result<u8, Problem> {
     let header = tally.header;
     let value = match number(token) {
-        Number::Value(value) if value <= header.maximum => return Ok(header.scale(value)),
+        Number::Value(value) if value <= header.maximum => return Ok(header.scale(value, tally.leniency)),
         Number::Value(_) | Number::Huge => header.maximum,
         Number::Negative => 0,
         Number::None => {
@@ -299,7 +299,7 @@ fn plain_sample(token: &[u8], place: FilePosition, index: usize, tally: &mut Tal
         }
     };
     tally.out_of_range(place, index, excerpt(token))?;
-    Ok(header.scale(value))
+    Ok(header.scale(value, tally.leniency))
 }
 
 fn binary_samples(mut bytes: Vec<u8>, mut raster: usize, tally: &mut Tally) -> Result<Vec<u8>, Problem> {
@@ -347,7 +347,7 @@ fn scaled_samples(bytes: &[u8], raster: usize, sample_bytes: usize, tally: &mut 
             let offset = raster + index * sample_bytes;
             tally.out_of_range(FilePosition::Byte(offset as u64), index, value.to_string())?;
         }
-        rgb.push(header.scale(value.min(header.maximum)));
+        rgb.push(header.scale(value.min(header.maximum), tally.leniency));
     }
     Ok(rgb)
 }

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::problem::{Problem, ProblemKind, ReadError, Warning};
 use super::{Picture, png, ppm};
+use crate::settings::Quantize;
 
 /// What to do with a file that breaks its format's rules.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -14,9 +15,20 @@ pub enum Leniency {
     #[default]
     Strict,
     /// What has an obvious meaning is taken for that, with a warning: samples out of range are clamped, missing samples
-    /// are 0, data after the last sample and transparency are ignored, 16-bit samples are rounded to 8 bits, and a PNG that is cut
-    /// off after its pixels, has more of them than its picture or is followed by other data is taken for what it holds.
-    Lenient,
+    /// are 0, data after the last sample and transparency are ignored, 16-bit samples become levels of 8 bits by this rule, and a
+    /// PNG that is cut off after its pixels, has more of them than its picture or is followed by other data is taken for what it holds.
+    Lenient(Quantize),
+}
+
+impl Leniency {
+    /// The level of 8 bits of a sample of 0..=`most`; fewer levels than that are spread evenly.
+    pub(super) fn level(self, sample: u32, most: u32) -> u8 {
+        let rule = match self {
+            Self::Lenient(rule) if most > 255 => rule,
+            _ => Quantize::Round,
+        };
+        rule.narrowed(sample, most)
+    }
 }
 
 /// A picture that was read, with what had to be got over.

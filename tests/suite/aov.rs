@@ -242,6 +242,22 @@ fn beside_a_picture_that_the_scene_names_only_pictures_are_replaced() {
     }
 }
 
+/// Whatever else the run writes is known before anything is rendered.
+#[test]
+fn files_beside_the_picture_are_no_other_files_of_the_run() {
+    let place = Folder::with_scene(&format!("{SCENE}OUTPUT a.ppm\n"));
+    fs::write(place.path("b.txt"), format!("{SCENE}OUTPUT a.bounce-2.png\n")).unwrap();
+    for (arguments, writes) in [
+        ("--aov normal --stats-json a.normal.png scene.txt -o a.png", "which --stats-json writes"),
+        ("--aov bounce scene.txt b.txt", "which the picture of b.txt writes"),
+    ] {
+        fs::write(place.path("a.normal.png"), "mine").unwrap();
+        assert_exit(&place.run(&format!("render --device cpu {arguments}")), 6, writes);
+        assert_eq!(fs::read(place.path("a.normal.png")).unwrap(), b"mine");
+        assert!(!place.path("a.png").exists() && !place.path("a.ppm").exists());
+    }
+}
+
 /// Of a device: its levels less the reference's.
 #[test]
 fn errors_are_those_of_the_devices_picture() {
@@ -332,6 +348,13 @@ fn what_a_device_tells_is_the_references_to_within_rounding() {
             assert_told(&format!("{name} from elsewhere at {tier}"), &device, tier, &scene, &moved);
         }
     }
+    // The reference looks at no light without a term that needs it.
+    let dark = small("effects/ambient.txt");
+    let dark = dark.viewed(&Settings::classic());
+    let of_dark = DeviceLayers::new(&device, Tier::Fast, &dark, &Effects::of(&dark), &TOLD).unwrap();
+    let untold: Vec<_> = TOLD.into_iter().filter(|&aov| !of_dark.tells(aov)).collect();
+    assert_eq!(untold, [Aov::NDotL, Aov::Shadow]);
+    drop(of_dark);
     let scene = small("effects/everything.txt");
     for factor in [2_f64.powi(60), 2_f64.powi(-60)] {
         assert_told("in other units", &device, Tier::Fast, &scaled(&scene, factor), &Settings::exact());

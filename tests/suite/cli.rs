@@ -184,6 +184,9 @@ fn wrong_arguments_are_usage_errors() {
         "compare a.ppm",
         "compare --scene scene.txt --device cpu",
         "compare missing.ppm missing.ppm",
+        "render --device cpu - -",
+        "check - -",
+        "study --device cpu - -",
     ] {
         assert_exit(&place.run(arguments), 2, "");
         assert_eq!(place.files(), ["scene.txt"], "{arguments}");

@@ -241,6 +241,11 @@ fn what_comes_out_slightly_different_is_a_warning() {
     let far = BALL.replace("-6 2 2 2", "-6e5 2 2 2").replace("0.5 1", "0 0");
     assert_eq!(warnings(&far.replace("-6e5", "-1e5"), &Settings::exact(), Peer::PovRay).len(), 1);
     assert_eq!(warnings(&far, &Settings::classic(), Peer::Tachyon).len(), 1);
+    // A thousandth of the way to the light is more than a tenth of a ball.
+    let other = BALL.replace("ball 0.5", "other 4.5");
+    let far_light = format!("{BALL}{other}LIGHT sun 2000 0 0 1 1 1\n");
+    assert!(warnings(&far_light, &Settings::classic(), Peer::Tachyon)[0].contains("nearer than 2.0e0"));
+    assert!(warnings(&far_light, &Settings::exact(), Peer::PovRay).is_empty());
 }
 
 #[test]

@@ -3,12 +3,14 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use glam::DVec3;
 use proptest::prelude::*;
 use tempfile::TempDir;
 use trueray::film::{
     Encoded, Format, Leniency, Picture, PictureError, PictureWriter, Problem, Reading, RowReader, Target, Warning,
     decode, read_picture,
 };
+use trueray::settings::Quantize;
 
 /// A picture with all 256 sample values where it is large enough.
 fn sample_picture(width: u32, height: u32) -> Picture {
@@ -37,7 +39,7 @@ fn strict(bytes: impl Into<Vec<u8>>) -> Result<Reading, Problem> {
 }
 
 fn lenient(bytes: impl Into<Vec<u8>>) -> Result<Reading, Problem> {
-    decode(bytes.into(), Leniency::Lenient)
+    decode(bytes.into(), Leniency::Lenient(Quantize::Round))
 }
 
 /// The message of a strict reading's error.
@@ -553,7 +555,7 @@ fn files_that_are_no_picture() {
 #[cfg(target_os = "linux")]
 #[test]
 fn endless_files_are_not_read_to_the_end() {
-    assert!(read_picture(Path::new("/dev/zero"), Leniency::Lenient).is_err());
+    assert!(read_picture(Path::new("/dev/zero"), Leniency::Lenient(Quantize::Round)).is_err());
 }
 
 #[test]
@@ -681,6 +683,16 @@ fn sixteen_bits() {
     assert_eq!(refusal(*binary), "samples up to 65535 take 16 bits; pictures here have 8 bits a channel");
     assert_eq!(mended(binary), (vec![255, 128, 0], vec!["samples were scaled from 0..65535 to 0..255".to_owned()]));
     assert_eq!(mended(b"P3 1 1 1000 0 500 1001").0, [0, 128, 255]);
+    // By the rule that has made them, of 8 bits as of 16.
+    let by = |rule| decode(binary.to_vec(), Leniency::Lenient(rule)).unwrap().picture.rgb().to_vec();
+    assert_eq!(by(Quantize::Truncate), [255, 127, 0]);
+    for rule in [Quantize::Truncate, Quantize::Round] {
+        for step in 0..100_000 {
+            let color = DVec3::splat(f64::from(step) / 99_999.0);
+            let narrowed = rule.levels16(color).map(|level| rule.narrowed(level.into(), 65535));
+            assert_eq!(narrowed, rule.levels(color), "{rule:?} of {color}");
+        }
+    }
     // Half a sample is none.
     assert_eq!(mended(b"P6 1 1 65535\n\xff\xff\x80").0, [255, 0, 0]);
 }

@@ -131,6 +131,9 @@ fn sixteen_bits_follow_the_rule_of_eight() {
     for quantize in ["truncate", "round"] {
         let rule = if quantize == "round" { Quantize::Round } else { Quantize::Truncate };
         render(&place, &format!("-q --device cpu --quantize {quantize} --bits 16 scene.txt -o a.png"), 0, "");
+        // Read as 8 bits, they are the picture of 8 bits.
+        let compare = format!("compare --lenient --quantize {quantize} --device cpu --scene scene.txt a.png");
+        place.exits(&compare, 0, "");
         let expected: Vec<_> =
             reference(&small(), &settings(1)).iter().flat_map(|pixel| rule.levels16(pixel.color)).collect();
         assert_eq!(png(&place, "a.png"), (16, 3, expected));
