@@ -159,10 +159,14 @@ impl FromStr for Coloring {
 
 fn range(text: &str) -> Result<(f64, f64), String> {
     let ends = text.split_once("..").and_then(|(low, high)| Some((low.parse().ok()?, high.parse().ok()?)));
-    ends.filter(|(low, high): &(f64, f64)| {
-        low.is_finite() && high.is_finite() && low != high && (high - low).is_finite()
-    })
-    .ok_or_else(|| format!("expected a range of two different numbers such as 0..1, not {text}"))
+    let (low, high) = ends
+        .filter(|(low, high): &(f64, f64)| low.is_finite() && high.is_finite() && low != high)
+        .ok_or_else(|| format!("expected a range of two different numbers such as 0..1, not {text}"))?;
+    if (high - low).is_finite() {
+        Ok((low, high))
+    } else {
+        Err(format!("expected a range that is no wider than {:e}, not {text}", f64::MAX))
+    }
 }
 
 /// A colour as `R,G,B`, each part 0 to 1, or as `#rrggbb`.

@@ -72,10 +72,6 @@ impl Reader for Ply {
             return Err(stop(log, source.end(), || Detail::new("no element `vertex`", "expected it in the header")));
         };
         let vertex = &elements[at];
-        if let Some(list) = vertex.properties.iter().find(|property| property.length.is_some()) {
-            let message = format!("`{}` of vertices is a list", shown(list.name.as_bytes()));
-            return Err(stop(log, source.end(), || Detail::new(message, "expected numbers")));
-        }
         let names = vertex.properties.iter().map(|property| property.name.clone()).collect();
         let mut columns = Columns::of(names, XYZ, options, whole(source.last()), log)?;
         let is_color = |property: &&Property| property.name.ends_with("red") || property.name == "r";
@@ -265,6 +261,10 @@ fn header(source: &mut Source<'_>, log: &mut Collector) -> Result<(Coding, Vec<E
                 elements.push(Element { name: (*name).to_owned(), count, properties: Vec::new() });
                 true
             }),
+            (["property", "list", _, _, name], Some(element)) if element.name == "vertex" => {
+                let message = format!("`{}` of vertices is a list", shown(name.as_bytes()));
+                return Err(stop(log, line.place(spans[4]), || Detail::new(message, "expected a number")));
+            }
             (["property", "list", length, of, name], Some(element)) => {
                 property(of, Some(length), name).map(|property| element.properties.push(property)).is_some()
             }

@@ -1,6 +1,6 @@
 //! Tables: a line with the names of the columns, then a line a particle; between fields commas, tabs or semicolons.
 //! Lines that begin with `#` or `//` are comments. Without names, numbers say by how many there are what they are; a comment above them
-//! may name them.
+//! may name them, and a line with a whole number says how many rows follow.
 
 use super::columns::{Columns, TextRow, XYZ};
 use super::frame::Frame;
@@ -10,6 +10,7 @@ use super::reader::Reader;
 use super::source::{Source, Stop, end_of, stop};
 use super::xyz::whole;
 use crate::scene::{Collector, Detail, Span, is_statement, parse_number};
+use crate::words::count;
 
 /// What may stand between fields.
 const SEPARATORS: [u8; 3] = [b'\t', b';', b','];
@@ -42,10 +43,9 @@ pub(super) fn separator(header: &[u8]) -> Option<u8> {
     SEPARATORS.into_iter().find(|separator| header.contains(separator))
 }
 
-/// Whether a line is a whole number, as before the points of some programs.
-fn is_count(line: &[u8]) -> bool {
-    let token = line.trim_ascii();
-    !token.is_empty() && token.iter().all(u8::is_ascii_digit)
+/// The number of the rows that follow, as some programs write it before points.
+fn count_in(line: &[u8]) -> Option<u64> {
+    str::from_utf8(line.trim_ascii()).ok()?.parse().ok()
 }
 
 /// The names that a comment above rows of so many fields has, if it has them.
@@ -82,8 +82,8 @@ impl Reader for Table {
             return Ok(true);
         };
         frame.clear();
-        let has_count = is_count(first.bytes);
-        if has_count {
+        let count = count_in(first.bytes);
+        if count.is_some() {
             source.line()?;
             comment = skip_comments(source)?.or(comment);
             let Some(next) = source.peek()? else { return Err(no_rows(source, log)) };
@@ -93,7 +93,7 @@ impl Reader for Table {
         let numbers = points::numbers(first.bytes);
         let mut columns = if let Some(numbers) = &numbers {
             let named = comment.and_then(|comment| names_in(&comment, numbers.len()));
-            let names = named.unwrap_or_else(|| points::names(numbers, has_count));
+            let names = named.unwrap_or_else(|| points::names(numbers, count.is_some()));
             Columns::of(names, XYZ, options, whole(first), log)?
         } else {
             let Some(header) = source.line()? else { return Ok(false) };
@@ -104,12 +104,15 @@ impl Reader for Table {
             };
             Columns::of((1..).zip(&self.spans).map(name).collect(), XYZ, options, whole(header), log)?
         };
-        let mut has_rows = false;
+        let mut rows = 0;
         while let Some(line) = source.line()? {
             if is_empty(line.bytes) {
                 continue;
             }
-            has_rows = true;
+            if count == Some(rows) {
+                return Err(stop(log, whole(line), || too_many(rows)));
+            }
+            rows += 1;
             points::split(line.bytes, separator, &mut self.spans);
             if self.spans.len() == columns.len() {
                 columns.read(&TextRow { line, spans: &self.spans }, None, frame, log);
@@ -117,7 +120,11 @@ impl Reader for Table {
                 log.error(end_of(line), || columns.missing(self.spans.len()));
             }
         }
-        if has_rows { Ok(true) } else { Err(no_rows(source, log)) }
+        match count {
+            Some(all) if rows < all => Err(stop(log, source.end(), || too_few(rows, all))),
+            _ if rows == 0 => Err(no_rows(source, log)),
+            _ => Ok(true),
+        }
     }
 }
 
@@ -132,6 +139,17 @@ fn skip_comments(source: &mut Source<'_>) -> Result<Option<Vec<u8>>, Stop> {
 
 fn no_rows(source: &Source<'_>, log: &mut Collector) -> Stop {
     stop(log, source.end(), || Detail::new("a table without rows", "expected a row of numbers"))
+}
+
+fn too_few(rows: u64, all: u64) -> Detail<'static> {
+    let message = format!("the file ends after {rows} of {}", count(all, "point"));
+    Detail { absent: "end of file", ..Detail::new(message, "expected a point") }
+}
+
+fn too_many(all: u64) -> Detail<'static> {
+    let message = format!("the file goes on behind {}", count(all, "point"));
+    Detail::new(message, "expected the end of the file")
+        .help("the number above the points says how many there are; with a comment below it, the file would be XYZ")
 }
 
 /// The cells of a line without blanks and quotes around them.

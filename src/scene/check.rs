@@ -123,14 +123,21 @@ impl Scene {
             check(keyword.form().fields, &[number], || keyword.text().into())?;
         }
         for (field, from, to) in [("right", left, right), ("top", bottom, top)] {
-            if from == to || !(to - from).is_finite() {
-                let expected = "expected another number than at the opposite edge, not too far from it";
-                return Err(invalid("the window", field, to, expected));
+            if !are_edges(from, to) {
+                return Err(invalid("the window", field, to, OPPOSITE));
             }
         }
         Ok(())
     }
 }
+
+/// Whether a window may lie between these.
+pub(crate) fn are_edges(from: f64, to: f64) -> bool {
+    from != to && (to - from).is_finite()
+}
+
+/// What they have to be.
+pub(crate) const OPPOSITE: &str = "expected another number than at the opposite edge, not too far from it";
 
 fn invalid(of: &str, field: &'static str, number: f64, expected: &'static str) -> Invalid {
     Invalid { of: of.into(), field, number, expected }

@@ -11,6 +11,7 @@ mod parse;
 mod write;
 
 pub use check::{Invalid, SceneError};
+pub(crate) use check::{OPPOSITE, are_edges};
 pub(crate) use diagnostics::{Collector, Detail, Line, Location, Span, Topic, render as show_diagnostics, shown};
 pub use diagnostics::{Diagnostic, Omitted, Severity};
 pub use foreign::foreign_kind;

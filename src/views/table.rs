@@ -7,7 +7,8 @@ use glam::DVec3;
 use super::{Frame, Placement};
 use crate::report::csv::{Cell, cells};
 use crate::scene::{
-    Collector, Detail, Fov, Line, MAX_RESOLUTION, Span, first_line, parse_number, show_diagnostics, shown,
+    Collector, Detail, Fov, Line, MAX_RESOLUTION, OPPOSITE, Span, are_edges, first_line, parse_number,
+    show_diagnostics, shown,
 };
 use crate::words::{count, slips};
 
@@ -143,6 +144,16 @@ impl Reader<'_> {
         };
         let size = [0, 1].map(|side| numbers[SIZE + side].map(|number| number as u32));
         let window = std::array::from_fn(|edge| numbers[WINDOW + edge]);
+        for low in [WINDOW + 1, WINDOW + 3] {
+            if let (Some(from), Some(to)) = (numbers[low], numbers[low + 1])
+                && let (Some((_, first)), Some((span, second))) = (row[low], row[low + 1])
+                && !are_edges(from, to)
+            {
+                let [first, second] = [first, second].map(|cell| shown(&cell.text));
+                let message = format!("{} is '{first}' and {} is '{second}'", NAMES[low], NAMES[low + 1]);
+                self.error(line, span, Detail::new(message, OPPOSITE));
+            }
+        }
         let fov = numbers[FOV].and_then(Fov::from_degrees).or(self.given.fov);
         if let (Some((span, _)), Some(edge)) = (row[FOV], (WINDOW + 1..FOV).find(|&edge| row[edge].is_some())) {
             let message = format!("both fov and {} say how large the window is", NAMES[edge]);

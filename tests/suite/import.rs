@@ -375,6 +375,9 @@ fn malformed_tables_and_points_are_refused_where_they_are_wrong() {
         ("x,y\n1,2\n", 1, 1, "x,y", "no columns of coordinates among x, y"),
         ("x,y,2024\n1,2,3\n", 1, 1, "x,y,2024", "no columns of coordinates"),
         ("1 2 3\n1 2\n", 2, 4, "end of line", "2 fields in a row of 3"),
+        ("5\n1 2 3\n4 5 6\n", 3, 6, "end of file", "the file ends after 2 of 5 points"),
+        ("2\n1 2 3\n\n# last\n4 5 6\n7 8 9\n", 6, 1, "7 8 9", "the file goes on behind 2 points"),
+        ("0\n1 2 3\n", 2, 1, "1 2 3", "the file goes on behind 0 points"),
         ("1 2 3 0 255 0\n1 2 3 0 256 0\n", 2, 9, "256", "`256` is no part of a colour"),
         ("x,y,z\n1,2\n", 2, 4, "end of line", "2 fields in a row of 3"),
         ("x,y,z\n1,2,3,4\n", 2, 8, "end of line", "4 fields in a row of 3"),
@@ -389,6 +392,7 @@ fn malformed_tables_and_points_are_refused_where_they_are_wrong() {
         ("x,y,z,color\n1,2,3,#12345\n", 2, 7, "#12345", "`#12345` is no colour"),
         (&PLY.replace("vertex 2", "vertex many"), 6, 1, "element vertex many", "is not understood"),
         (&PLY.replace("vertex 2", "vertex 3"), 17, 18, "end of file", "ends after 2 of 3 `vertex`"),
+        (&PLY.replace("float y", "list uchar int foo"), 8, 25, "foo", "`foo` of vertices is a list"),
         (&PLY.replace("ascii", "ebcdic"), 2, 1, "format ebcdic 1.0", "is not understood"),
         (&PLY.replace("4 5 6 0", "4 5 6"), 17, 16, "end of line", "6 fields in a row of 7"),
         (&format!("{PLY}7 8 9 0 0 0 1\n"), 18, 1, "7 8 9 0 0 0 1", "goes on behind its last element"),
@@ -846,6 +850,8 @@ fn particles_are_rendered_as_imported() {
     assert_exit(&run(place, "render --device cpu --radius 2 benzene.txt -o c.ppm"), 2, "holds no particles");
     assert_exit(&run(place, "import benzene.txt"), 3, "holds no particles");
     assert_exit(&run(place, "check --color-by 255,128,0 benzene.xyz"), 2, "#ff8000");
+    assert_exit(&run(place, "check --color-by charge:-1e308..1e308 benzene.xyz"), 2, "no wider than 1.79");
+    assert_exit(&run(place, "check --color-by charge:1..1 benzene.xyz"), 2, "two different numbers");
     assert_exit(&run(place, "render --frame all benzene.xyz -o c.ppm"), 2, "one frame");
     assert_exit(&run(place, "check --direction x --vertical x benzene.xyz"), 2, "--vertical is parallel");
     std::fs::write(place.join("bad.xyz"), "1\nc\nO 0 0 o\n").unwrap();

@@ -3,6 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Output;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 use glam::DVec3;
 use serde_json::Value;
@@ -345,6 +347,31 @@ fn a_frame_that_fails_is_named_and_keeps_no_other_from_being_rendered() {
     assert_eq!(place.files(), ["bad.txt", "f1.png", "f5.png", "scene.txt", "views.csv"]);
 }
 
+/// Of a frame whose file cannot be written, no more is rendered than what is on its way.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_frame_without_a_file_is_not_rendered_on() {
+    let place = folder();
+    std::os::unix::fs::symlink("/dev/full", place.path("f1.ppm")).unwrap();
+    place.write("views.csv", "width,height\n2048,4096\n");
+    let arguments = "-q --views views.csv scene.txt -o f%d.ppm --timeline t.json";
+    render(&place, arguments, 6, "frame 1: cannot write f1.ppm: ");
+    let steps: Vec<Value> = serde_json::from_slice(&place.read("t.json")).unwrap();
+    let traced = steps.iter().filter(|step| step["ph"] == "B" && step["name"] == "trace by the reference");
+    let pixels: u64 = traced.map(|step| step["args"]["pixels"].as_str().unwrap().parse::<u64>().unwrap()).sum();
+    assert!((1..2048 * 4096).contains(&pixels), "{pixels}");
+
+    // No disk has room for it, and its first band would take minutes.
+    place.write("views.csv", "width,height\n16777216,16777216\n");
+    let mut child = place.command("render --device cpu -q --views views.csv scene.txt -o g%d.ppm").spawn().unwrap();
+    let start = Instant::now();
+    while child.try_wait().unwrap().is_none() && start.elapsed() < Duration::from_secs(60) {
+        sleep(Duration::from_millis(50));
+    }
+    child.kill().unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(6), "after {:?}", start.elapsed());
+}
+
 /// What is wrong, with the line, the column and the token.
 #[test]
 fn errors_of_a_table_name_line_column_and_token() {
@@ -362,6 +389,8 @@ fn errors_of_a_table_name_line_column_and_token() {
         ("height\n1.5\n", "2:1", "height is out of range: '1.5'"),
         ("near\n-1\n", "2:1", "near is out of range: '-1'"),
         ("fov\n180\n", "2:1", "fov is out of range: '180'"),
+        ("left,right\n1,1\n", "2:3", "left is '1' and right is '1'"),
+        ("bottom,top\n0,1\n-1e308,1e308\n", "3:8", "bottom is '-1e308' and top is '1e308'"),
         ("top,fov\n1,40\n", "2:3", "both fov and top say how large the window is"),
         ("eye_x,at_x,at_y\n1,2,3\n", "2:3", "at_z is missing"),
         ("eye_x,eye_y,eye_z,at_x,at_y,at_z\n 1,2,3,1,2,3\n", "2:2", "eye and look-at are the same point"),

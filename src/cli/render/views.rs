@@ -9,26 +9,26 @@ mod write;
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::time::Instant;
 
 use self::frame_list::FrameList;
 use self::pattern::Pattern;
 use self::prepare::{Opened, Prepared, Preparer, Source};
-use self::write::{Step, Writer};
+use self::write::{File, Step, Writer};
 use super::{Args, Noted, coding_of, folder, write_stats};
 use crate::cli::color;
 use crate::cli::failure::{Failure, SCENE, USAGE};
 use crate::cli::files::check_place;
 use crate::cli::guard::Guard;
 use crate::cli::input::Loaded;
-use crate::cli::linear::Coding;
+use crate::cli::linear::{Coding, Film};
 use crate::cli::named::check_named;
 use crate::cli::output::err;
 use crate::cli::timeline::Timeline;
 use crate::engine::render_bands;
 use crate::film::Target;
-use crate::gpu::{self, USUAL_KERNELS};
+use crate::gpu::USUAL_KERNELS;
 use crate::threads::{at_once, in_stages};
 use crate::view::ViewError;
 use crate::views::{Frame, table, turntable};
@@ -133,10 +133,10 @@ pub(super) fn run(args: &Args) -> Result<u8, Failure> {
     guard.options([("--timeline", &args.timeline)])?;
     let jobs = jobs(args, &loaded, frames, &mut guard)?;
     let (name, total) = (loaded.name.clone(), jobs.len() as u32);
-    let stop = AtomicBool::new(false);
+    let (stop, lost) = (AtomicBool::new(false), AtomicU32::new(0));
     let mut preparer = Preparer::new(args, &settings, &opened, Source::new(loaded, args.picture.resolution()), jobs);
-    let mut writer = Writer::new(args, guard, &name, total, &stop);
-    let render = |prepared, hand_on: &mut dyn FnMut(Step)| render(args, prepared, hand_on);
+    let mut writer = Writer::new(args, guard, &name, total, (&stop, &lost));
+    let render = |prepared, hand_on: &mut dyn FnMut(Step)| render(args, prepared, &lost, hand_on);
     in_stages(|| preparer.next(&stop), render, |step| writer.take(step));
     let (stats, code) = writer.finish(start.elapsed());
     if let Some(path) = &args.stats_json {
@@ -188,22 +188,29 @@ fn jobs(args: &Args, loaded: &Loaded, frames: Vec<(u32, Frame)>, guard: &mut Gua
     frames.into_iter().map(job).collect()
 }
 
-/// Renders a frame and hands on what becomes of it.
-fn render(args: &Args, prepared: Result<Option<Prepared>, Failure>, hand_on: &mut dyn FnMut(Step)) {
+/// Renders a frame and hands on what becomes of it; one whose file has failed, which `lost` tells, is not rendered on.
+fn render(args: &Args, prepared: Result<Option<Prepared>, Failure>, lost: &AtomicU32, hand_on: &mut dyn FnMut(Step)) {
     let Prepared { target, coding, note, levels, bar, mut engine, mut stats, start } = match prepared {
         Ok(Some(prepared)) => prepared,
         Ok(None) => return hand_on(Step::There),
         Err(failure) => return hand_on(Step::Failed(failure)),
     };
     let number = stats.frame.unwrap_or_default();
-    hand_on(Step::Begin { number, target, coding, note, levels, bar: bar.map(Box::new), size: engine.size() });
+    let failed = |failure: Failure| Step::Failed(failure.of(&frame_name(number)));
+    let (opening, path) = (Instant::now(), target.argument().to_owned());
+    // A band can take minutes: whether there is a file for it is to be known before.
+    match Film::new(coding, &target, engine.size(), note.as_deref(), levels, bar) {
+        Ok(writer) => hand_on(Step::Begin(Box::new(File { number, path, writer, took: opening.elapsed() }))),
+        Err(error) => return hand_on(failed(error.into())),
+    }
     let rendered = render_bands(&mut engine, |band| {
         hand_on(Step::Rows { rgb: band.rgb.to_vec(), linear: band.linear.to_vec() });
-        Ok::<_, gpu::Error>(())
+        if lost.load(Ordering::Relaxed) == number { Err(None) } else { Ok(()) }
     });
     let not_finite = match rendered {
         Ok(not_finite) => not_finite,
-        Err(error) => return hand_on(Step::Failed(Failure::from(error).of(&frame_name(number)))),
+        Err(None) => return,
+        Err(Some(error)) => return hand_on(failed(error.into())),
     };
     let Noted { rays, times, verified, cut, stages } = Noted::by(&engine);
     stats.rays = rays.filter(|_| !args.no_ray_counts);

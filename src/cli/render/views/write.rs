@@ -1,38 +1,25 @@
 //! Frames on their way to their files.
 
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::time::{Duration, Instant};
-
-use glam::DVec3;
 
 use super::{Args, frame_name};
 use crate::cli::failure::{DEVICE_LOST, Failure, OK, OUTPUT, STOPPED};
 use crate::cli::guard::Guard;
-use crate::cli::linear::{Coding, Film};
+use crate::cli::linear::Film;
 use crate::cli::output::{err, errln};
 use crate::cli::progress::Progress;
 use crate::cli::render::{say_cut, say_not_finite};
 use crate::cli::stats::{Stats, peak_memory_mib};
-use crate::color_bar::ColorBar;
 use crate::engine::ms;
-use crate::film::{OutputError, Target};
 use crate::linear::Linear;
-use crate::settings::Quantize;
 use crate::words::{count, visible};
 
 /// What becomes of a frame, step by step.
 pub(super) enum Step {
     /// Rows follow.
-    Begin {
-        number: u32,
-        target: Target,
-        coding: Coding,
-        note: Option<String>,
-        levels: (Quantize, DVec3),
-        bar: Option<Box<ColorBar>>,
-        size: (u32, u32),
-    },
+    Begin(Box<File>),
     /// 3 bytes a pixel, and colours where the file has them.
     Rows { rgb: Vec<u8>, linear: Vec<Linear> },
     /// The rows are complete; so many pixels the device could not do, and then began the preparation.
@@ -54,60 +41,65 @@ pub(super) struct Writer<'a> {
     /// Frames whose files were there already.
     there: u32,
     /// Where the rows that come go; none where that has failed.
-    file: Option<File>,
+    file: Option<Box<File>>,
     progress: Progress,
     stats: Vec<Stats>,
     last: String,
     code: u8,
     stop: &'a AtomicBool,
+    lost: &'a AtomicU32,
 }
 
 /// The file of a frame.
-struct File {
-    number: u32,
-    path: PathBuf,
-    writer: Film,
+pub(super) struct File {
+    pub(super) number: u32,
+    pub(super) path: PathBuf,
+    pub(super) writer: Film,
     /// What writing it has taken.
-    took: Duration,
+    pub(super) took: Duration,
 }
 
 impl<'a> Writer<'a> {
-    /// Sets `stop` where further frames would fail as well.
-    pub(super) fn new(args: &'a Args, guard: Guard, name: &str, total: u32, stop: &'a AtomicBool) -> Self {
+    /// Sets `stop` where further frames would fail as well, and `lost` to the number of a frame whose file has failed.
+    pub(super) fn new(
+        args: &'a Args,
+        guard: Guard,
+        name: &str,
+        total: u32,
+        (stop, lost): (&'a AtomicBool, &'a AtomicU32),
+    ) -> Self {
         let progress = Progress::of_frames(args.progress_style(), name, total);
         let (name, file, stats, last) = (name.to_owned(), None, Vec::new(), String::new());
-        Self { args, guard, name, total, done: 0, written: 0, there: 0, file, progress, stats, last, code: OK, stop }
+        let (done, written, there, code) = (0, 0, 0, OK);
+        Self { args, guard, name, total, done, written, there, file, progress, stats, last, code, stop, lost }
     }
 
     pub(super) fn take(&mut self, step: Step) {
         match step {
-            Step::Begin { number, target, coding, note, levels, bar, size } => {
-                let film =
-                    |target: &Target| Film::new(coding, target, size, note.as_deref(), levels, bar.map(|bar| *bar));
-                let opened = self.open(number, &target, film);
-                self.file = self.noted(opened.map_err(|failure| failure.of(&frame_name(number))));
+            Step::Begin(file) => {
+                let unwritten = self.guard.check_unwritten("it", &file.path);
+                self.file = self.noted(file.number, unwritten).map(|()| file);
             }
             Step::Rows { rgb, linear } => {
-                let Some(File { number, path, mut writer, took }) = self.file.take() else { return };
+                let Some(mut file) = self.file.take() else { return };
                 let start = Instant::now();
-                let written = writer.write(&rgb, &linear).map(|_| writer);
-                let written = written.map_err(|error| Failure::from(error).of(&frame_name(number)));
-                let took = took + start.elapsed();
-                self.file = self.noted(written).map(|writer| File { number, path, writer, took });
+                let written = file.writer.write(&rgb, &linear).map(drop);
+                file.took += start.elapsed();
+                self.file = self.noted(file.number, written).map(|()| file);
             }
             Step::End { stats, cut, start } => {
-                let Some(File { number, path, writer, took }) = self.file.take() else { return };
+                let Some(file) = self.file.take() else { return };
+                let File { number, path, writer, took } = *file;
                 let _span = tracing::info_span!("finish file").entered();
                 let finishing = Instant::now();
-                let finished = writer.finish().map_err(|error| Failure::from(error).of(&frame_name(number)));
-                if self.noted(finished).is_some() {
+                if self.noted(number, writer.finish()).is_some() {
                     self.guard.written(&path);
                     self.end(*stats, cut, took + finishing.elapsed(), start);
                 }
             }
             Step::Failed(failure) => {
                 self.file = None;
-                self.noted::<()>(Err(failure));
+                self.fail(&failure);
             }
             Step::There => {
                 self.there += 1;
@@ -116,26 +108,19 @@ impl<'a> Writer<'a> {
         }
     }
 
-    fn open(
-        &self,
-        number: u32,
-        target: &Target,
-        film: impl FnOnce(&Target) -> Result<Film, OutputError>,
-    ) -> Result<File, Failure> {
-        let (start, path) = (Instant::now(), target.argument().to_owned());
-        self.guard.check_unwritten("it", &path)?;
-        let writer = film(target)?;
-        Ok(File { number, path, writer, took: start.elapsed() })
+    /// What there is; a failure of its file ends the frame, whose other rows nobody needs.
+    fn noted<T, E: Into<Failure>>(&mut self, number: u32, result: Result<T, E>) -> Option<T> {
+        let failed = |error: E| {
+            self.lost.store(number, Ordering::Relaxed);
+            self.fail(&error.into().of(&frame_name(number)));
+        };
+        result.map_err(failed).ok()
     }
 
-    /// What there is; a failure is said and ends the frame.
-    fn noted<T>(&mut self, result: Result<T, Failure>) -> Option<T> {
-        let failure = match result {
-            Ok(value) => return Some(value),
-            Err(failure) => failure,
-        };
+    /// Says why there will be no such frame.
+    fn fail(&mut self, failure: &Failure) {
         self.progress.pause(|| {
-            self.args.progress.say_failed(&failure);
+            self.args.progress.say_failed(failure);
             _ = failure.report();
         });
         // What was stopped is to be repeated, whatever else there was.
@@ -144,7 +129,6 @@ impl<'a> Writer<'a> {
             self.stop.store(true, Ordering::Relaxed);
         }
         self.step();
-        None
     }
 
     /// The file is there.
