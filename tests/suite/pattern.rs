@@ -1,7 +1,7 @@
 //! Samples that are no regular grid: their places, how evenly they lie, and that every way of rendering has the same.
 
 use trueray::area::Area;
-use trueray::cpu::{Judge, Reference};
+use trueray::cpu::Reference;
 use trueray::effects::Effects;
 use trueray::engine::{Backend, Engine, render_picture};
 use trueray::pattern::{Filter, Pattern};
@@ -208,7 +208,7 @@ fn every_way_of_rendering_has_the_same_samples() {
         for tier in Tier::ALL {
             let (shown, not_finite) = gpu_picture(gpu, tier, &scene, &settings, &case.effects);
             assert_eq!(not_finite, 0);
-            case.assert_explained(&format!("{pattern:?} at {tier}"), &shown, Judge::of(tier));
+            case.assert_explained(&format!("{pattern:?} at {tier}"), &shown, Backend::Device(gpu, tier).judge());
             let differing = shown.pixels().iter().zip(case.expected.pixels()).filter(|(a, b)| a != b).count();
             assert!(differing <= 20, "{pattern:?} at {tier}: {differing}");
             assert!(part(Backend::Device(gpu, tier)) == cut(shown.rgb()), "{pattern:?} at {tier}: a part");
