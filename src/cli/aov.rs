@@ -123,7 +123,7 @@ impl AovOptions {
         let files = self.aov_format.iter().flat_map(|format| match format {
             AovFormat::Png => names.iter().map(|name| beside(picture, name, "png")).collect(),
             AovFormat::Pfm => names.iter().map(|name| beside(picture, name, "pfm")).collect(),
-            AovFormat::Exr => vec![picture.with_extension("aov.exr")],
+            AovFormat::Exr => vec![file_of_all(picture)],
         });
         files.collect::<Vec<_>>().iter().try_for_each(|file| guard.check_free("--aov", file))
     }
@@ -233,7 +233,7 @@ impl Collector<'_> {
                     files.extend(layers.iter().map(|l| (beside(picture, &l.name, "pfm"), Contents::Numbers(l))));
                 }
                 AovFormat::Exr => {
-                    let file = self.file.clone().unwrap_or_else(|| picture.with_extension("aov.exr"));
+                    let file = self.file.clone().unwrap_or_else(|| file_of_all(picture));
                     files.push((file, Contents::All(&layers)));
                 }
             }
@@ -310,6 +310,11 @@ const REFERENCE: &str = "the CPU reference";
 /// `scene.normal.png` beside `scene.png`.
 fn beside(picture: &Path, name: &str, ending: &str) -> PathBuf {
     picture.with_extension(format!("{name}.{ending}"))
+}
+
+/// `scene.aov.exr` beside `scene.png`.
+fn file_of_all(picture: &Path) -> PathBuf {
+    picture.with_extension("aov.exr")
 }
 
 /// What a file has.
