@@ -6,7 +6,7 @@ use std::ops::{Add, Mul, Sub};
 use dashu_int::ops::BitTest;
 use dashu_int::{IBig, Sign, UBig};
 
-use crate::cpu::Dd;
+use crate::cpu::Wide;
 
 /// A whole number times a power of ten. Unlike a fraction it needs no common divisor, which takes most of a fraction's time.
 #[derive(Debug, Clone, Default)]
@@ -26,24 +26,28 @@ impl Decimal {
         Self { digits: digits.into(), exponent: exponent.parse::<i32>().unwrap_or_default() - places }
     }
 
-    /// Times 2ᵏ, to the nearest double-double but for a unit.
-    pub(crate) fn to_dd(&self, k: i32) -> Dd {
-        /// Bits to keep: more than a double-double has.
-        const BITS: usize = 160;
+    /// Times 2ᵏ, to the nearest number of `T` but for a unit.
+    pub(crate) fn rounded<T: Wide>(&self, k: i32) -> T {
+        // More bits than a `T` has.
+        let bits = 54 * (T::PARTS + 1);
         let power = UBig::from(10_u8).pow(self.exponent.unsigned_abs() as usize);
         // A whole number over 2ˢ.
         let (whole, shift) = if self.exponent >= 0 {
             (&self.digits * power, 0)
         } else {
-            let shift = BITS + power.bit_len();
+            let shift = bits + power.bit_len();
             ((&self.digits << shift) / power, shift)
         };
-        let excess = whole.bit_len().saturating_sub(BITS);
+        let excess = whole.bit_len().saturating_sub(bits);
         let places = i32::try_from(excess).unwrap_or(i32::MAX) - i32::try_from(shift).unwrap_or(i32::MAX);
-        let whole = whole >> excess;
-        let hi = whole.to_f64().value();
-        let rest = whole - IBig::try_from(hi).unwrap_or_default();
-        Dd::from_sum(hi, rest.to_f64().value()).times_power_of_two(k + places)
+        let mut rest = whole >> excess;
+        let mut sum = T::ZERO;
+        for _ in 0..T::PARTS {
+            let part = rest.to_f64().value();
+            rest -= IBig::try_from(part).unwrap_or_default();
+            sum += T::from_f64(part);
+        }
+        sum.times_power_of_two(k + places)
     }
 
     /// Its sign.

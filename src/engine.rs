@@ -197,6 +197,7 @@ impl<O: Output> DeviceEngine<'_, O> {
         if let Some(certifier) = &mut self.certifier {
             certifier.stages.reference += unsure.len() as u64;
             certifier.stages.more_bits += tally.more_bits;
+            certifier.stages.most_bits += tally.most_bits;
             certifier.stages.undecided += tally.undecided;
         }
         unsure.into_iter().zip(shown).for_each(|(pixel, Shown { levels, linear })| place(pixel, levels, Some(linear)));
@@ -414,8 +415,8 @@ impl<'a, O: Output> Engine<'a, O> {
     pub fn stages(&self) -> Option<Stages> {
         match self {
             Self::Cpu(cpu) => {
-                let Tally { more_bits, undecided, .. } = cpu.tally;
-                Some(Stages { reference: cpu.pixels, more_bits, undecided, ..Stages::default() })
+                let Tally { more_bits, most_bits, undecided, .. } = cpu.tally;
+                Some(Stages { reference: cpu.pixels, more_bits, most_bits, undecided, ..Stages::default() })
             }
             Self::Gpu(gpu) => gpu.certifier.as_ref().map(|certifier| certifier.stages),
         }

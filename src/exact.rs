@@ -9,7 +9,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::camera::Camera;
-use crate::cpu::{Dd, Ray, Vec3};
+use crate::cpu::{Ray, Vec3, Wide};
 use crate::decimal::Decimal;
 use crate::geometry::Ellipsoid;
 use crate::pattern::Ticks;
@@ -157,12 +157,14 @@ impl ExactCamera {
         [std::array::from_fn(|_| Decimal::default()), std::array::from_fn(|axis| &point[axis] + &ahead[axis])]
     }
 
-    /// Likewise in double-double, with 2ᵏ for what a length of the file is to have, and 2ᵐ for the way to the image plane.
-    fn ray_in_dd(&self, sample: [u32; 2], [k, m]: [i32; 2]) -> Ray<Dd> {
-        let count = self.count().to_dd(0);
+    /// Likewise in a `T`, with 2ᵏ for what a length of the file is to have, and 2ᵐ for the way to the image plane.
+    fn rounded_ray<T: Wide>(&self, sample: [u32; 2], [k, m]: [i32; 2]) -> Ray<T> {
+        let count: T = self.count().rounded(0);
         let [origin, direction] = self.ray(sample);
-        let vector =
-            |[x, y, z]: [Decimal; 3], k: i32| Vec3::new(x.to_dd(k) / count, y.to_dd(k) / count, z.to_dd(k) / count);
+        let vector = |axes: [Decimal; 3], k: i32| {
+            let [x, y, z] = axes.map(|x| x.rounded::<T>(k) / count);
+            Vec3::new(x, y, z)
+        };
         Ray { origin: vector(origin, k), direction: vector(direction, m) }
     }
 
@@ -214,38 +216,38 @@ impl ExactScene {
         }
     }
 
-    /// The ray of a sample in the units of kernels, in double-double.
-    pub(crate) fn ray(&self, sample: [u32; 2]) -> Ray<Dd> {
-        self.camera.ray_in_dd(sample, [self.factor, self.factor + self.stretch])
+    /// The ray of a sample in the units of kernels, in a `T`.
+    pub(crate) fn ray<T: Wide>(&self, sample: [u32; 2]) -> Ray<T> {
+        self.camera.rounded_ray(sample, [self.factor, self.factor + self.stretch])
     }
 
-    /// A place of the file with the eye at the origin, in the units of kernels, in double-double.
-    fn seen(&self, place: DVec3) -> Vec3<Dd> {
+    /// A place of the file with the eye at the origin, in the units of kernels, in a `T`.
+    fn seen<T: Wide>(&self, place: DVec3) -> Vec3<T> {
         let [x, y, z] = vector(place);
         let [ex, ey, ez] = &self.camera.eye;
-        Vec3::new((&x - ex).to_dd(self.factor), (&y - ey).to_dd(self.factor), (&z - ez).to_dd(self.factor))
+        Vec3::new((&x - ex).rounded(self.factor), (&y - ey).rounded(self.factor), (&z - ez).rounded(self.factor))
     }
 
     /// Centre and semi-axes of a sphere, likewise.
-    pub(crate) fn sphere(&self, sphere: usize) -> [Vec3<Dd>; 2] {
+    pub(crate) fn sphere<T: Wide>(&self, sphere: usize) -> [Vec3<T>; 2] {
         let [center, semi_axes] = self.spheres[sphere];
-        let [a, b, c] = vector(semi_axes).map(|x| x.to_dd(self.factor));
+        let [a, b, c] = vector(semi_axes).map(|x| x.rounded(self.factor));
         [self.seen(center), Vec3::new(a, b, c)]
     }
 
     /// Where a light is, likewise.
-    pub(crate) fn light(&self, light: usize) -> Vec3<Dd> {
+    pub(crate) fn light<T: Wide>(&self, light: usize) -> Vec3<T> {
         self.seen(self.lights[light])
     }
 
     /// A length of the file in the units of kernels, likewise.
-    pub(crate) fn length(&self, x: f64) -> Dd {
-        Decimal::shortest(x * power_of_two(-self.factor)).to_dd(self.factor)
+    pub(crate) fn length<T: Wide>(&self, x: f64) -> T {
+        Decimal::shortest(x * power_of_two(-self.factor)).rounded(self.factor)
     }
 
     /// A part of a primary ray, with 1 on the image plane: in units of its direction.
-    pub(crate) fn part(&self, x: f64) -> Dd {
-        Decimal::shortest(x).to_dd(-self.stretch)
+    pub(crate) fn part<T: Wide>(&self, x: f64) -> T {
+        Decimal::shortest(x).rounded(-self.stretch)
     }
 
     /// The sign of B² − AC for the ray of a sample, by its column and row, and the sphere with this index.

@@ -43,9 +43,9 @@ pub(crate) const ROOT_AT_EDGE: f64 = 1.1;
 pub(crate) const NEAR: f64 = 20.0;
 /// A power below e to this is as good as none.
 pub(crate) const NOTHING: f64 = -20.0;
-/// What double-double leaves in doubt is taken for a tie where it lies within so much of one, in object space or as a part of what it is
-/// compared with. Errors are about 1e-28, but for what many bounces between curved mirrors make of them.
-pub(crate) const TIE: f64 = 1e-20;
+/// What 237 bits leave in doubt is taken for a tie where it lies within so much of one, in object space or as a part of what it is
+/// compared with. Errors are about 1e-69, but for what many bounces between curved mirrors make of them.
+pub(crate) const TIE: f64 = 1e-60;
 /// An angle in doubt by more than this is not followed.
 pub(crate) const LOST: f64 = 0.1;
 

@@ -22,7 +22,7 @@ use super::vec3::{Vec3, largest, length};
 use super::witness::Witness;
 use crate::brightness::Scalar;
 use crate::roundings::{
-    ALONG, ANGLE, AXES, LENGTH, LOCAL, LOST, NEAR, NOTHING, PLACE, POWER, ROOT, ROOT_AT_EDGE, SQUARE, TERM, TIE,
+    ALONG, ANGLE, AXES, LENGTH, LOCAL, LOST, NEAR, NOTHING, PLACE, POWER, ROOT, ROOT_AT_EDGE, SQUARE, TERM,
 };
 use crate::settings::Specular;
 
@@ -570,7 +570,7 @@ impl<T: Real, const PROOF: bool> Witness<T> for Bound<T, PROOF> {
             self.cone.direction + two::<T>() * (self.normal + self.roundings(LENGTH + ANGLE))
         } else {
             // The derivatives of the bend r·c − √k by c and by r, of the least k.
-            let root = max(square - square_error, T::from_f64(1e-30)).sqrt();
+            let root = max(square - square_error, T::from_f64(if PROOF { 1e-200 } else { 1e-30 })).sqrt();
             ratio * self.cone.direction
                 + bend.abs() * self.normal
                 + ratio * (bend.abs() / root) * cosine_error
@@ -602,7 +602,7 @@ fn least<T: Real>(v: Vec3<T>) -> T {
 /// Whether a number that is known to differ from 0 by no more than its error is taken for 0: by who has the last word, where it is near
 /// enough.
 fn is_tie<T: Real, const PROOF: bool>(x: T) -> bool {
-    PROOF && !T::PROVES && x.abs() < T::from_f64(TIE)
+    PROOF && x.abs() < T::from_f64(T::TIE)
 }
 
 /// Error of half a chord whose square is off by `squared`: |√x − √y| ≤ |x − y|/√x.

@@ -24,7 +24,7 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub};
 
-use super::real::Real;
+use super::real::{Real, Wide};
 use crate::accel::Rounding;
 use crate::brightness::Scalar;
 
@@ -117,13 +117,6 @@ impl Dd {
         let product = divisor.times_f64(quotient);
         let remainder = (self.hi - product.hi) + (self.lo - product.lo);
         Self::renormalized(quotient, remainder / divisor.hi)
-    }
-
-    /// x·2ᵏ for |k| ≤ 2000, exactly while nothing leaves the range of `f64`.
-    pub(crate) fn times_power_of_two(self, k: i32) -> Self {
-        let half = power_of_two(k / 2);
-        let rest = power_of_two(k - k / 2);
-        Self::renormalized(self.hi * half * rest, self.lo * half * rest)
     }
 
     /// eˣ − 1 for |x| ≤ 0.7, with a relative error below 1e-30.
@@ -223,6 +216,16 @@ impl Real for Dd {
     #[inline]
     fn is_finite(self) -> bool {
         self.hi.is_finite()
+    }
+}
+
+impl Wide for Dd {
+    const PARTS: usize = 2;
+
+    fn times_power_of_two(self, k: i32) -> Self {
+        let half = power_of_two(k / 2);
+        let rest = power_of_two(k - k / 2);
+        Self::renormalized(self.hi * half * rest, self.lo * half * rest)
     }
 }
 

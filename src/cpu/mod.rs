@@ -10,6 +10,7 @@ mod inspect;
 mod intersect;
 mod judge;
 mod margin;
+mod octuple;
 pub mod oracle;
 mod paths;
 mod pick;
@@ -41,6 +42,7 @@ pub(crate) use intersect::Ray;
 pub use judge::{Finding, Judge, Trial};
 pub use pick::{PrimaryHit, picked};
 pub use real::Real;
+pub(crate) use real::Wide;
 #[doc(hidden)]
 pub use render::Bounded;
 pub(crate) use render::Shown;

@@ -1,17 +1,20 @@
 //! The reference's proof of its own decisions: it carries a bound of its errors along, and where that leaves a decision open the
-//! sample is traced in double-double, and then once more with the decisions of that.
+//! sample is traced in double-double, where that does too with 237 bits, and then once more with the decisions of these.
+
+use std::sync::OnceLock;
 
 use super::bound::Bound;
 use super::dd::Dd;
-use super::intersect::{Primary, Range};
+use super::intersect::{Primary, Range, Ray};
+use super::octuple::Octuple;
 use super::oracle::quotient;
-use super::real::Real;
+use super::real::{Real, Wide};
 use super::render::{Reference, Tally, resolve};
 use super::replay::{Notes, Replay};
 use super::scene::{Glass, Material, PointLight, Shape, World};
 use super::ties::Ties;
 use super::trace::trace;
-use super::vec3::Vec3;
+use super::vec3::{Vec3, length};
 use crate::camera::NEAR_T_MIN;
 use crate::decimal::Decimal;
 use crate::geometry::reciprocal_power_of_two;
@@ -28,7 +31,7 @@ impl<T: Real> Reference<T> {
         if !T::PROVES {
             return resolve(self.primaries(i, j).map(|primary| trace(&self.world, &primary, tally)), count);
         }
-        let (mut more_bits, mut undecided) = (false, false);
+        let mut effort = None;
         let samples = self.primaries(i, j).map(|primary| {
             if primary.seen.is_empty() {
                 // No ray of the tile meets a sphere.
@@ -39,21 +42,22 @@ impl<T: Real> Reference<T> {
             if bound.unsure.is_none() {
                 return color;
             }
-            let (mut decisions, is_open) = self.decide(&primary);
-            (more_bits, undecided) = (true, undecided | is_open);
+            let (mut decisions, took) = self.decide(&primary);
+            effort = effort.max(Some(took));
             let mut decided = Tally::default();
             let color = trace(&self.world, &primary, &mut (&mut decisions, &mut decided));
             tally.hits = hits + decided.hits;
             color
         });
         let color = resolve(samples, count);
-        tally.more_bits += u64::from(more_bits);
-        tally.undecided += u64::from(undecided);
+        tally.more_bits += u64::from(effort.is_some());
+        tally.most_bits += u64::from(effort > Some(Effort::DoubleDouble));
+        tally.undecided += u64::from(effort == Some(Effort::Rule));
         color
     }
 
-    /// The decisions of a sample that `T` leaves open, and whether double-double leaves one open, too; none where it does not.
-    pub(super) fn open_decisions(&self, primary: &Primary<T>) -> Option<(Replay, bool)> {
+    /// The decisions of a sample where `T` leaves one open, and what they took.
+    pub(super) fn open_decisions(&self, primary: &Primary<T>) -> Option<(Replay, Effort)> {
         let mut bound = self.bound();
         self.bounded_color(primary, &mut bound, &mut Tally::default());
         bound.unsure.map(|_| self.decide(primary))
@@ -66,24 +70,58 @@ impl<T: Real> Reference<T> {
         trace(&self.world, primary, &mut (bound, tally))
     }
 
-    /// The decisions of a sample in double-double, and whether that leaves one open.
+    /// The decisions of a sample that `T` leaves open.
     #[cold]
-    fn decide(&self, primary: &Primary<T>) -> (Replay, bool) {
-        let world = self.exact_world.get_or_init(|| in_dd(&self.world));
-        let primary = Primary { ray: world.exact.ray(primary.sample), sample: primary.sample, seen: primary.seen };
-        let (mut ties, mut notes) = (Ties::new(world, &primary.ray), Notes::default());
+    fn decide(&self, primary: &Primary<T>) -> (Replay, Effort) {
+        let world = self.wide_worlds.0.get_or_init(|| widened(&self.world));
+        let primary = in_world(world, primary);
+        let (mut bound, mut notes) = (Bound::<Dd, true>::new(world), Notes::default());
+        bound.begin(errors(&primary.ray));
+        trace(world, &primary, &mut (&mut bound, &mut notes));
+        if bound.unsure.is_none() {
+            return (notes.replay(), Effort::DoubleDouble);
+        }
+        let world = self.wide_worlds.1.get_or_init(|| widened(&self.world));
+        let primary = in_world(world, &primary);
+        let (mut ties, mut notes) = (Ties::new(world), Notes::default());
+        ties.bound.begin(errors(&primary.ray));
         trace(world, &primary, &mut (&mut ties, &mut notes));
-        (notes.replay(), ties.bound.unsure.is_some())
+        (notes.replay(), if ties.bound.unsure.is_none() { Effort::Octuple } else { Effort::Rule })
     }
 }
 
+/// What the decisions of a sample take that `f64` leaves open.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Effort {
+    /// Double-double.
+    DoubleDouble,
+    /// 237 bits.
+    Octuple,
+    /// What 237 bits leave open, too, was taken for a tie where it lies all but on one.
+    Rule,
+}
+
+/// The scene with the places of its file, in the types that decide, once one has to.
+pub(super) type WideWorlds = (OnceLock<World<Dd>>, OnceLock<World<Octuple>>);
+
+/// The ray of a sample in `world`.
+fn in_world<'a, T, W: Wide>(world: &World<W>, primary: &Primary<'a, T>) -> Primary<'a, W> {
+    Primary { ray: world.exact.ray(primary.sample), sample: primary.sample, seen: primary.seen }
+}
+
+/// How far the origin of such a ray may be off, and its direction as an angle: a quotient of counts and a sum before it.
+fn errors<W: Wide>(ray: &Ray<W>) -> [W; 2] {
+    let error = W::from_f64(4.0 * W::UNIT);
+    [error * length(ray.origin), error]
+}
+
 /// `world` with its places as the decimals of the file say.
-fn in_dd<T: Real>(world: &World<T>) -> World<Dd> {
+fn widened<T: Real, W: Wide>(world: &World<T>) -> World<W> {
     let exact = &world.exact;
     let axes = |index: usize| {
-        let [center, semi_axes] = exact.sphere(index);
+        let [center, semi_axes] = exact.sphere::<W>(index);
         let largest = [semi_axes.y, semi_axes.z].into_iter().fold(semi_axes.x, |a, b| if b > a { b } else { a });
-        let k = Dd::from(reciprocal_power_of_two(largest.to_f64()));
+        let k = W::from_f64(reciprocal_power_of_two(largest.to_f64()));
         (center, semi_axes, largest, k)
     };
     let shape = |(index, shape): (usize, &Shape<T>)| {
@@ -99,7 +137,7 @@ fn in_dd<T: Real>(world: &World<T>) -> World<Dd> {
     };
     let glass = |glass: &Glass<T>| {
         let eta = decimal(glass.eta);
-        Glass { kt: as_it_is(glass.kt), eta, inv_eta: Dd::ONE / eta }
+        Glass { kt: as_it_is(glass.kt), eta, inv_eta: W::ONE / eta }
     };
     let light = |(index, light): (usize, &PointLight<T>)| {
         let (position, kernels) = (exact.light(index), light.position.to_f64());
@@ -108,10 +146,10 @@ fn in_dd<T: Real>(world: &World<T>) -> World<Dd> {
         let position = if has_moved { Vec3::from_f64(kernels) } else { position };
         PointLight { position, intensity: Vec3::from_f64(light.intensity.to_f64()) }
     };
-    let range = |t_min, greater| Range { t_min, t_max: Dd::FAR, greater };
-    let primary = if world.primary.t_min > T::ZERO { exact.part(NEAR_T_MIN) } else { Dd::ZERO };
+    let range = |t_min, greater| Range { t_min, t_max: W::FAR, greater };
+    let primary = if world.primary.t_min > T::ZERO { exact.part(NEAR_T_MIN) } else { W::ZERO };
     // The lists are of what `f64` has made of the file.
-    let allowance = |of: T| Dd::from(of.to_f64() - world.moved);
+    let allowance = |of: T| W::from_f64(of.to_f64() - world.moved);
     World {
         shapes: world.shapes.iter().enumerate().map(shape).collect(),
         materials: world.materials.iter().enumerate().map(material).collect(),
@@ -140,11 +178,11 @@ fn in_dd<T: Real>(world: &World<T>) -> World<Dd> {
 }
 
 /// The decimal that a number of the file stands for.
-fn decimal<T: Real>(x: T) -> Dd {
-    Decimal::shortest(x.to_f64()).to_dd(0)
+fn decimal<T: Real, W: Wide>(x: T) -> W {
+    Decimal::shortest(x.to_f64()).rounded(0)
 }
 
 /// A number that decides nothing.
-fn as_it_is<T: Real>(x: T) -> Dd {
-    Dd::from(x.to_f64())
+fn as_it_is<T: Real, W: Wide>(x: T) -> W {
+    W::from_f64(x.to_f64())
 }

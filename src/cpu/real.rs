@@ -37,6 +37,10 @@ pub trait Real:
     /// Whether a picture in this type proves each of its decisions.
     const PROVES: bool;
 
+    /// What is in doubt and lies within so much of a tie, in object space or as a part of what it is compared with, is taken for one; 0 for
+    /// a type that does not have the last word.
+    const TIE: f64 = 0.0;
+
     /// How the type rounds.
     const ROUNDING: Rounding;
 
@@ -66,6 +70,15 @@ pub trait Real:
             product
         }
     }
+}
+
+/// A type with more bits than `f64`.
+pub(crate) trait Wide: Real {
+    /// So many `f64`s add up to any of its numbers, but for a unit.
+    const PARTS: usize;
+
+    /// x·2ᵏ for |k| ≤ 2000, exactly while nothing leaves the range.
+    fn times_power_of_two(self, k: i32) -> Self;
 }
 
 macro_rules! impl_real {

@@ -1,14 +1,12 @@
 //! Rows of pixels from the reference, in parallel.
 
-use std::sync::OnceLock;
-
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::bound::Bound;
-use super::dd::Dd;
 use super::decision::Decision;
 use super::intersect::{Hit, Own, Primary, Range, Ray};
+use super::proof::WideWorlds;
 use super::real::Real;
 use super::scene::World;
 use super::trace::trace;
@@ -28,8 +26,7 @@ use crate::viewed::ViewedScene;
 #[derive(Debug, Clone)]
 pub struct Reference<T> {
     pub(super) world: World<T>,
-    /// The same in double-double, once a pixel needs it.
-    pub(super) exact_world: OnceLock<World<Dd>>,
+    pub(super) wide_worlds: WideWorlds,
     pub(super) camera: Camera,
     pub(super) quantize: Quantize,
 }
@@ -50,7 +47,7 @@ impl<T: Real> Reference<T> {
     /// Likewise, with lists of spheres that were made for another renderer of this scene, which rounds at least like `T`.
     pub fn with_lists(viewed: &ViewedScene, effects: &Effects, accel: Acceleration) -> Self {
         let (world, camera) = (World::new(viewed, effects, accel), Camera::new(viewed));
-        Self { world, exact_world: OnceLock::new(), camera, quantize: viewed.settings().quantize }
+        Self { world, wide_worlds: WideWorlds::default(), camera, quantize: viewed.settings().quantize }
     }
 
     /// The ray of the sample in sample column `i` and sample row `j`.
@@ -295,7 +292,9 @@ pub struct Tally {
     pub reflection: u64,
     /// Pixels with a decision that `f64` leaves open: double-double has taken it.
     pub more_bits: u64,
-    /// Those of them with one that double-double leaves open, too: it was taken for a tie where it lies all but on one.
+    /// Those of them with one that double-double leaves open, too: 237 bits have taken it.
+    pub most_bits: u64,
+    /// Those of them with one that these leave open, too: it was taken for a tie where it lies all but on one.
     pub undecided: u64,
 }
 
@@ -310,6 +309,7 @@ impl Tally {
             shadow: self.shadow + other.shadow,
             reflection: self.reflection + other.reflection,
             more_bits: self.more_bits + other.more_bits,
+            most_bits: self.most_bits + other.most_bits,
             undecided: self.undecided + other.undecided,
         }
     }

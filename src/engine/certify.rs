@@ -31,7 +31,9 @@ pub struct Stages {
     pub reference: u64,
     /// Those of them for which the reference took more bits than `f64` has: double-double.
     pub more_bits: u64,
-    /// Those of them with a decision that double-double leaves open, too: it was taken for a tie where it lies all but on one.
+    /// Those of them for which it took still more: 237.
+    pub most_bits: u64,
+    /// Those of them with a decision that these leave open, too: it was taken for a tie where it lies all but on one.
     pub undecided: u64,
 }
 
@@ -46,7 +48,11 @@ impl Stages {
 
     /// What the reference's decisions took.
     pub fn decisions_in_words(&self) -> String {
-        format!("{} needed double-double, {} undecided", count(self.more_bits, "pixel"), self.undecided)
+        let Self { more_bits, most_bits, undecided, .. } = *self;
+        format!(
+            "{} needed double-double, {most_bits} of them 237 bits, {undecided} undecided",
+            count(more_bits, "pixel")
+        )
     }
 }
 

@@ -64,8 +64,10 @@ pub(crate) fn pixel_table(record: &PixelRecord, labels: Labels) -> String {
     let [red, green, blue] = record.levels;
     row(&mut text, "levels", &format!("{red}, {green}, {blue}: {} without their fractions", numbers(&record.scaled)));
     if record.more_bits {
+        let (by, open) =
+            if record.most_bits { ("237 bits", " and double-double leave") } else { ("double-double", " leaves") };
         let ties = if record.undecided { ", and one by the rules for ties" } else { "" };
-        row(&mut text, "decided by", &format!("double-double: f64 leaves a decision open{ties}"));
+        row(&mut text, "decided by", &format!("{by}: f64{open} a decision open{ties}"));
     }
     text += "decisions         nearest first, by the change that turns them\n";
     for margin in &record.decisions {

@@ -1,9 +1,11 @@
 //! The reference proves its decisions: where `f64` leaves one open double-double takes it, and exact ties go by rule.
 
+use dashu_float::FBig;
+use dashu_float::round::mode::HalfEven;
 use glam::DVec3;
 use trueray::cpu::{Reference, Tally, oracle};
 use trueray::effects::Effects;
-use trueray::scene::Scene;
+use trueray::scene::{Scene, Window};
 use trueray::settings::{Convention, Settings};
 use trueray::stress::Random;
 
@@ -112,5 +114,88 @@ fn scenes_without_ties_are_decided() {
             let (_, tally) = whole(&scene, &convention.settings());
             assert_eq!(tally.undecided, 0, "{name}, {convention:?}");
         }
+    }
+}
+
+/// A room with a mirror for a wall and mirroring balls in it, 120 of them: their centres, in hundredths, and the scene.
+fn room_of_balls() -> (Vec<[i64; 3]>, Scene) {
+    let cells = (0..125_i64).map(|k| [k / 25 - 2, k / 5 % 5 - 2, k % 5 - 2]);
+    let far = cells.enumerate().filter(|(_, cell)| (1..=9).contains(&cell.iter().map(|x| x * x).sum::<i64>()));
+    let aside = |k: usize, by: usize| (k * by % 11) as i64 * 5 - 25;
+    let centers: Vec<[i64; 3]> =
+        far.map(|(k, [x, y, z])| [300 * x + aside(k, 3), 300 * y + aside(k, 5), 300 * z + aside(k, 7)]).collect();
+    let ball = |center: &[i64; 3]| {
+        let [x, y, z] = center.map(|x| x as f64 / 100.0);
+        format!("SPHERE ball {x} {y} {z} 1 1 1 1 1 1 0.02 0 0 1 1\n")
+    };
+    let balls: String = centers.iter().map(ball).collect();
+    let scene = scene_of(&format!("SPHERE room 0 0 0 12 12 12 1 1 1 0.002 0 0 1 1\n{balls}AMBIENT 1 1 1"));
+    let window = Window { left: -1.2, right: 1.2, bottom: -1.2, top: 1.2, ..scene.window };
+    (centers, Scene { width: 12, height: 12, window, ..scene })
+}
+
+type Big = FBig<HalfEven>;
+
+/// x/100 with 500 bits.
+fn big(hundredths: i64) -> Big {
+    Big::from(hundredths).with_precision(500).value() / Big::from(100)
+}
+
+fn dot(a: &[Big; 3], b: &[Big; 3]) -> Big {
+    a.iter().zip(b).map(|(a, b)| a * b).reduce(|sum, x| sum + x).unwrap()
+}
+
+/// The ambient light that a ray through this point of the plane z = −1 gathers on its way over `bounces` mirrors.
+fn gathered(through: [i64; 2], balls: &[[i64; 3]], bounces: u32) -> f64 {
+    let (room, one) = (big(1200), big(100));
+    let mut origin = [0; 3].map(big);
+    let mut direction = [big(through[0]), big(through[1]), big(-100)];
+    let (mut light, mut own) = (0.0, None);
+    for _ in 0..=bounces {
+        // Which ball is the next can be told by f64, where nothing is in doubt.
+        let [o, d] = [&origin, &direction].map(|v| DVec3::from_array([0, 1, 2].map(|axis| v[axis].to_f64().value())));
+        let others = balls.iter().enumerate().filter(|&(ball, _)| own != Some(ball));
+        let mut hits: Vec<(f64, usize)> = others
+            .filter_map(|(ball, center)| {
+                let s = o - DVec3::from_array(center.map(|x| x as f64 / 100.0));
+                let (a, b) = (d.dot(d), s.dot(d));
+                let discriminant = b * b - a * (s.dot(s) - 1.0);
+                assert!(discriminant.abs() > 1e-9, "nearly a tangent");
+                let t = (-b - discriminant.max(0.0).sqrt()) / a;
+                (discriminant > 0.0 && t > 0.0).then_some((t, ball))
+            })
+            .collect();
+        hits.sort_by(|a, b| a.0.total_cmp(&b.0));
+        assert!(hits.len() < 2 || hits[1].0 - hits[0].0 > 1e-9, "nearly a tie");
+        own = hits.first().map(|hit| hit.1);
+        let center = own.map_or([0; 3], |ball| balls[ball]).map(big);
+        let radius = if own.is_some() { &one } else { &room };
+        light += if own.is_some() { 0.02 } else { 0.002 };
+        let s = [0, 1, 2].map(|axis| &origin[axis] - &center[axis]);
+        let (a, b, c) = (dot(&direction, &direction), dot(&s, &direction), dot(&s, &s) - radius * radius);
+        let root = (&b * &b - &a * c).sqrt();
+        let t = if own.is_some() { (-b - root) / &a } else { (root - b) / &a };
+        origin = [0, 1, 2].map(|axis| &origin[axis] + &t * &direction[axis]);
+        let normal = [0, 1, 2].map(|axis| &origin[axis] - &center[axis]);
+        let twice = Big::from(2) * dot(&normal, &direction) / dot(&normal, &normal);
+        direction = [0, 1, 2].map(|axis| &direction[axis] - &twice * &normal[axis]);
+    }
+    light
+}
+
+/// Each ball multiplies what is wrong in a ray by some ten: after 40 mirrors double-double knows nothing of its way.
+#[test]
+fn after_forty_curved_mirrors_all_is_decided() {
+    let (balls, scene) = room_of_balls();
+    let settings = Settings { max_depth: 40, ..Settings::exact() };
+    let reference = reference(&scene, &settings);
+    let (_, tally) = whole(&scene, &settings);
+    assert_eq!((tally.most_bits, tally.undecided), (144, 0));
+    for pixel in 0..144 {
+        let [i, j] = [pixel % 12, pixel / 12];
+        // In hundredths: the window is 2.4 wide, so that the middles of pixels are whole ones.
+        let through = [20 * i64::from(i) - 110, 110 - 20 * i64::from(j)];
+        let (found, right) = (reference.color(i, j).unwrap().x, gathered(through, &balls, 40));
+        assert!((found - right).abs() < 1e-12, "pixel {i}, {j}: {found}, not {right}");
     }
 }

@@ -14,6 +14,7 @@ use self::margins::{Distinct, Least};
 use self::recorder::{Detail, Recorder};
 use self::units::Units;
 use super::decision::Decision;
+use super::proof::Effort;
 use super::render::{Levels, Reference, resolve};
 use super::trace::trace;
 use super::vec3::Vec3;
@@ -66,13 +67,13 @@ impl Inspector {
     fn record(&self, i: u32, j: u32, detail: Detail) -> PixelRecord {
         let world = &self.reference.world;
         let (mut samples, mut colors) = (Vec::new(), Vec::new());
-        let (mut more_bits, mut undecided) = (false, false);
+        let mut effort = None;
         for primary in self.reference.primaries(i, j) {
             let mut recorder = Recorder::new(self.units, &self.distinct, detail, primary.sample);
             let color = match self.reference.open_decisions(&primary) {
                 None => trace(world, &primary, &mut recorder),
-                Some((mut decisions, is_open)) => {
-                    (more_bits, undecided) = (true, undecided | is_open);
+                Some((mut decisions, took)) => {
+                    effort = effort.max(Some(took));
                     trace(world, &primary, &mut (&mut decisions, &mut recorder))
                 }
             };
@@ -98,8 +99,9 @@ impl Inspector {
             scaled: color.to_f64().to_array().map(|c| quantize.scale() * c.clamp(0.0, 1.0) + quantize.bias()),
             levels: Levels::new(quantize).levels(color),
             decisions: least.sorted(),
-            more_bits,
-            undecided,
+            more_bits: effort.is_some(),
+            most_bits: effort > Some(Effort::DoubleDouble),
+            undecided: effort == Some(Effort::Rule),
         }
     }
 }

@@ -17,7 +17,9 @@ pub struct PixelRecord {
     pub levels: [u8; 3],
     /// Whether `f64` leaves a decision open, so that double-double has taken them all,
     pub more_bits: bool,
-    /// and whether that leaves one open, too, which goes by the rules for ties.
+    /// whether that leaves one open, too, so that 237 bits have taken them,
+    pub most_bits: bool,
+    /// and whether these leave one open, which goes by the rules for ties.
     pub undecided: bool,
     /// Of each kind of decision the one that the least change would turn, nearest first.
     pub decisions: Vec<Margin>,
