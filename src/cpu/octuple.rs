@@ -53,7 +53,7 @@ impl Real for Octuple {
         // What is below these bits only says that they are not all: enough to round correctly.
         let significand = 1 << HIGH_BITS | fraction | u128::from(low != 0);
         // Beyond this nothing but 0 and infinity is left of it.
-        let power = (exponent - BIAS).clamp(-1200, 1200) - HIGH_BITS as i32;
+        let power = (exponent - BIAS).clamp(-1200, 1200) - HIGH_BITS.cast_signed();
         let half = f64::from(power / 2).exp2();
         let size = significand as f64 * half * f64::from(power - power / 2).exp2();
         if self.0.is_sign_negative() { -size } else { size }

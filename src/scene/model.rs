@@ -140,6 +140,13 @@ impl Names {
         self.ends.push(self.text.len() as u64);
     }
 
+    /// Appends all labels of `others`.
+    pub(crate) fn append(&mut self, others: &Self) {
+        let before = self.text.len() as u64;
+        self.text.push_str(&others.text);
+        self.ends.extend(others.ends.iter().map(|end| before + end));
+    }
+
     /// The label at `index`, or `""` past the end.
     pub fn get(&self, index: usize) -> &str {
         let Some(&end) = self.ends.get(index) else {

@@ -6,6 +6,7 @@
 
 mod keyword;
 mod number;
+mod piece;
 
 use glam::DVec3;
 
@@ -58,7 +59,7 @@ pub fn parse(file: &str, text: &[u8]) -> Parsed {
     if text.starts_with(b"\xFF\xFE") || text.starts_with(b"\xFE\xFF") {
         parser.refuse_utf16(text);
     } else {
-        parser.run(text.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(text));
+        parser.run(text.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(text), piece::SIZE);
     }
     parser.finish(file)
 }
@@ -163,22 +164,10 @@ struct Parser<'a> {
 }
 
 impl<'a> Parser<'a> {
-    fn run(&mut self, text: &'a [u8]) {
-        let mut tokens = Tokens::new();
-        let mut line = Line { number: 1, bytes: b"" };
-        let mut rest = text;
-        for number in 1.. {
-            if rest.is_empty() {
-                break;
-            }
-            let (bytes, taken) = first_line(rest);
-            rest = &rest[taken..];
-            line = Line { number, bytes };
-            self.rest = rest;
-            tokens.split(bytes);
-            self.statement(line, &tokens);
-        }
-        self.require_statements(line);
+    fn run(&mut self, text: &'a [u8], piece: usize) {
+        let last = self.lines(text, piece);
+        // Of an empty file it is the first, too.
+        self.require_statements(Line { number: last.number.max(1), ..last });
         self.check_window();
     }
 
