@@ -119,9 +119,9 @@ fn scenes_without_ties_are_decided() {
 
 /// A room with a mirror for a wall and mirroring balls in it, 120 of them: their centres, in hundredths, and the scene.
 fn room_of_balls() -> (Vec<[i64; 3]>, Scene) {
-    let cells = (0..125_i64).map(|k| [k / 25 - 2, k / 5 % 5 - 2, k % 5 - 2]);
-    let far = cells.enumerate().filter(|(_, cell)| (1..=9).contains(&cell.iter().map(|x| x * x).sum::<i64>()));
-    let aside = |k: usize, by: usize| (k * by % 11) as i64 * 5 - 25;
+    let cells = (0..125_i64).map(|k| (k, [k / 25 - 2, k / 5 % 5 - 2, k % 5 - 2]));
+    let far = cells.filter(|(_, cell)| (1..=9).contains(&cell.iter().map(|x| x * x).sum::<i64>()));
+    let aside = |k: i64, by: i64| k * by % 11 * 5 - 25;
     let centers: Vec<[i64; 3]> =
         far.map(|(k, [x, y, z])| [300 * x + aside(k, 3), 300 * y + aside(k, 5), 300 * z + aside(k, 7)]).collect();
     let ball = |center: &[i64; 3]| {
