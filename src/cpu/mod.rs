@@ -13,6 +13,7 @@ mod margin;
 mod octuple;
 pub mod oracle;
 mod paths;
+mod per_sphere;
 mod pick;
 mod proof;
 mod real;

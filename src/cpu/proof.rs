@@ -1,20 +1,21 @@
 //! The reference's proof of its own decisions: it carries a bound of its errors along, and where that leaves a decision open the
 //! sample is traced in double-double, where that does too with 237 bits, and then once more with the decisions of these.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use super::bound::Bound;
 use super::dd::Dd;
 use super::intersect::{Primary, Range, Ray};
 use super::octuple::Octuple;
 use super::oracle::quotient;
+use super::per_sphere::PerSphere;
 use super::real::{Real, Wide};
 use super::render::{Reference, Tally, resolve};
 use super::replay::{Notes, Replay};
 use super::scene::{Glass, Material, PointLight, Shape, World};
 use super::ties::Ties;
 use super::trace::trace;
-use super::vec3::{Vec3, length};
+use super::vec3::{Vec3, largest, length};
 use crate::camera::NEAR_T_MIN;
 use crate::decimal::Decimal;
 use crate::geometry::reciprocal_power_of_two;
@@ -115,30 +116,9 @@ fn errors<W: Wide>(ray: &Ray<W>) -> [W; 2] {
     [error * length(ray.origin), error]
 }
 
-/// `world` with its places as the decimals of the file say.
-fn widened<T: Real, W: Wide>(world: &World<T>) -> World<W> {
+/// `world` with its places as the decimals of the file say. Of many spheres few are asked for.
+fn widened<T: Real, W: Wide>(world: &Arc<World<T>>) -> World<W> {
     let exact = &world.exact;
-    let axes = |index: usize| {
-        let [center, semi_axes] = exact.sphere::<W>(index);
-        let largest = [semi_axes.y, semi_axes.z].into_iter().fold(semi_axes.x, |a, b| if b > a { b } else { a });
-        let k = W::from_f64(reciprocal_power_of_two(largest.to_f64()));
-        (center, semi_axes, largest, k)
-    };
-    let shape = |(index, shape): (usize, &Shape<T>)| {
-        let (center, semi_axes, largest, k) = axes(index);
-        let ratios = quotient(Vec3::new(largest, largest, largest), semi_axes);
-        Shape { center, inv_scale: ratios * k, radius: largest * k, index: shape.index }
-    };
-    let material = |(index, material): (usize, &Material<T>)| {
-        let (_, semi_axes, largest, k) = axes(index);
-        let scale = quotient(semi_axes, Vec3::new(largest * k, largest * k, largest * k));
-        let [ka, kd, ks, kr, n] = [material.ka, material.kd, material.ks, material.kr, material.n].map(as_it_is);
-        Material { scale, color: Vec3::from_f64(material.color.to_f64()), ka, kd, ks, kr, n }
-    };
-    let glass = |glass: &Glass<T>| {
-        let eta = decimal(glass.eta);
-        Glass { kt: as_it_is(glass.kt), eta, inv_eta: W::ONE / eta }
-    };
     let light = |(index, light): (usize, &PointLight<T>)| {
         let (position, kernels) = (exact.light(index), light.position.to_f64());
         // Lights out of reach have come nearer.
@@ -151,9 +131,9 @@ fn widened<T: Real, W: Wide>(world: &World<T>) -> World<W> {
     // The lists are of what `f64` has made of the file.
     let allowance = |of: T| W::from_f64(of.to_f64() - world.moved);
     World {
-        shapes: world.shapes.iter().enumerate().map(shape).collect(),
-        materials: world.materials.iter().enumerate().map(material).collect(),
-        glasses: world.glasses.iter().map(glass).collect(),
+        shapes: each(world, world.shapes.all().len(), shape),
+        materials: each(world, world.materials.all().len(), material),
+        glasses: each(world, world.glasses.all().len(), glass),
         lights: world.lights.iter().enumerate().map(light).collect(),
         ambient: Vec3::from_f64(world.ambient.to_f64()),
         background: Vec3::from_f64(world.background.to_f64()),
@@ -174,6 +154,52 @@ fn widened<T: Real, W: Wide>(world: &World<T>) -> World<W> {
         accel: world.accel.clone(),
         tangents: world.tangents,
         exact: exact.clone(),
+    }
+}
+
+/// What `make` makes of `world` for each of so many spheres.
+fn each<T: Real, S>(
+    world: &Arc<World<T>>,
+    count: usize,
+    make: impl Fn(&World<T>, usize) -> S + Send + Sync + 'static,
+) -> PerSphere<S> {
+    let world = Arc::clone(world);
+    PerSphere::lazy(count, move |sphere| make(&world, sphere))
+}
+
+fn shape<T: Real, W: Wide>(world: &World<T>, sphere: usize) -> Shape<W> {
+    let Axes { center, semi_axes, largest, k } = Axes::of(world, sphere);
+    let ratios = quotient(Vec3::new(largest, largest, largest), semi_axes);
+    Shape { center, inv_scale: ratios * k, radius: largest * k, index: world.shapes[sphere].index }
+}
+
+fn material<T: Real, W: Wide>(world: &World<T>, sphere: usize) -> Material<W> {
+    let (material, Axes { semi_axes, largest, k, .. }) = (&world.materials[sphere], Axes::of(world, sphere));
+    let scale = quotient(semi_axes, Vec3::new(largest * k, largest * k, largest * k));
+    let [ka, kd, ks, kr, n] = [material.ka, material.kd, material.ks, material.kr, material.n].map(as_it_is);
+    Material { scale, color: Vec3::from_f64(material.color.to_f64()), ka, kd, ks, kr, n }
+}
+
+fn glass<T: Real, W: Wide>(world: &World<T>, sphere: usize) -> Glass<W> {
+    let glass = &world.glasses[sphere];
+    let eta = decimal(glass.eta);
+    Glass { kt: as_it_is(glass.kt), eta, inv_eta: W::ONE / eta }
+}
+
+/// A sphere as the file has it, in the units of kernels.
+struct Axes<W> {
+    center: Vec3<W>,
+    semi_axes: Vec3<W>,
+    largest: W,
+    /// The power of two that brings it between 1 and 2.
+    k: W,
+}
+
+impl<W: Wide> Axes<W> {
+    fn of<T: Real>(world: &World<T>, sphere: usize) -> Self {
+        let [center, semi_axes] = world.exact.sphere::<W>(sphere);
+        let largest = largest(semi_axes);
+        Self { center, semi_axes, largest, k: W::from_f64(reciprocal_power_of_two(largest.to_f64())) }
     }
 }
 

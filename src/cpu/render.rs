@@ -1,5 +1,7 @@
 //! Rows of pixels from the reference, in parallel.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -25,7 +27,7 @@ use crate::viewed::ViewedScene;
 /// The CPU reference: the whole specification, in the scalar `T`.
 #[derive(Debug, Clone)]
 pub struct Reference<T> {
-    pub(super) world: World<T>,
+    pub(super) world: Arc<World<T>>,
     pub(super) wide_worlds: WideWorlds,
     pub(super) camera: Camera,
     pub(super) quantize: Quantize,
@@ -46,7 +48,7 @@ impl<T: Real> Reference<T> {
 
     /// Likewise, with lists of spheres that were made for another renderer of this scene, which rounds at least like `T`.
     pub fn with_lists(viewed: &ViewedScene, effects: &Effects, accel: Acceleration) -> Self {
-        let (world, camera) = (World::new(viewed, effects, accel), Camera::new(viewed));
+        let (world, camera) = (Arc::new(World::new(viewed, effects, accel)), Camera::new(viewed));
         Self { world, wide_worlds: WideWorlds::default(), camera, quantize: viewed.settings().quantize }
     }
 

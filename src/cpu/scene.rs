@@ -5,6 +5,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::intersect::Range;
+use super::per_sphere::PerSphere;
 use super::real::Real;
 use super::tangent::Tangents;
 use super::vec3::Vec3;
@@ -70,10 +71,10 @@ pub(crate) struct PointLight<T> {
 /// Everything that tracing reads, rounded once to `T`.
 #[derive(Debug, Clone)]
 pub(crate) struct World<T> {
-    pub shapes: Vec<Shape<T>>,
-    pub materials: Vec<Material<T>>,
+    pub shapes: PerSphere<Shape<T>>,
+    pub materials: PerSphere<Material<T>>,
     /// Empty where nothing refracts.
-    pub glasses: Vec<Glass<T>>,
+    pub glasses: PerSphere<Glass<T>>,
     pub lights: Vec<PointLight<T>>,
     pub ambient: Vec3<T>,
     pub background: Vec3<T>,

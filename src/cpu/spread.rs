@@ -49,13 +49,13 @@ impl Gamut {
     pub(super) fn of(world: &World<f64>) -> Self {
         let mut surface = Extent::NONE;
         let (mut mirrored, mut refracted) = (0.0_f64, 0.0_f64);
-        for material in &world.materials {
+        for material in world.materials.all() {
             let ambient = Extent::up_to((world.ambient * material.color).to_f64() * material.ka);
             let lights = world.lights.iter().map(|light| Self::of_light(material, light));
             surface = surface.hull(lights.fold(ambient, Extent::plus));
             mirrored = mirrored.max(material.kr.abs());
         }
-        for glass in &world.glasses {
+        for glass in world.glasses.all() {
             refracted = refracted.max(glass.kt.abs());
         }
         let background = Extent::up_to(world.background.to_f64());

@@ -34,7 +34,7 @@ pub(super) struct Surfaces {
 impl Surfaces {
     pub(super) fn of(world: &World<f64>) -> Self {
         let mut seen = HashSet::new();
-        let order = (0..world.shapes.len()).filter(|&sphere| seen.insert(world.shapes[sphere].bits())).collect();
+        let order = (0..world.shapes.all().len()).filter(|&sphere| seen.insert(world.shapes[sphere].bits())).collect();
         let mut surfaces = Self { order, balls: Vec::new() };
         surfaces.divide(world, 0..surfaces.order.len());
         surfaces

@@ -15,7 +15,7 @@ pub(super) struct Distinct(Vec<usize>);
 impl Distinct {
     pub(super) fn of(world: &World<f64>) -> Self {
         let mut seen = HashSet::new();
-        Self((0..world.shapes.len()).filter(|&sphere| seen.insert(world.shapes[sphere].bits())).collect())
+        Self((0..world.shapes.all().len()).filter(|&sphere| seen.insert(world.shapes[sphere].bits())).collect())
     }
 }
 
