@@ -82,7 +82,7 @@ pub(super) struct Args {
     /// Print which effects are simulated, and why
     #[arg(long, help_heading = "Output")]
     explain: bool,
-    /// Print device, effects, rays, times and memory
+    /// Print device, effects, what decisions took, rays, times and memory
     #[arg(long, help_heading = "Output")]
     stats: bool,
     /// Write the same as JSON; `-` is standard error

@@ -229,7 +229,9 @@ impl Report {
         }
         match &self.certificate_mismatch {
             Some(mismatch) => outln!("certificate       of something else: {}", visible(mismatch)),
-            None if has_certificate => outln!("certificate       of this scene, these settings and this picture"),
+            None if has_certificate => {
+                outln!("certificate       of this scene, these settings and this picture; the rest of it is a claim")
+            }
             None => {}
         }
         if let Some(WrongPixel { x, y, picture, reference }) = self.first {

@@ -136,7 +136,11 @@ impl Explanation {
         }
         let _ = writeln!(text, "  {:>8}  unexplained", self.unexplained);
         if self.unexplained > 0 {
-            let first = if self.unexplained > JUDGED_AGAIN as u64 { "of the first 1000" } else { "of them" };
+            let first = if self.unexplained > JUDGED_AGAIN as u64 {
+                "of the first 1000, which alone were tried,"
+            } else {
+                "of them"
+            };
             let _ = writeln!(text, "  {:>8}  {first} beyond all roundings that there are, added up", self.proven);
         }
         if self.undecided > 0 {

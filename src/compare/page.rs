@@ -215,7 +215,7 @@ fn one_cause(cause: &Cause) -> Markup {
 fn decisions(explanation: &Explanation) -> Markup {
     html! {
         h2 { "Pixels by decision" }
-        p { "Which decision of the reference rounding can turn, so that the pixel is what A has." }
+        p { "By which decision each pixel that differs is explained: rounding can turn it, and turned it gives what A has." }
         dl {
             dt { "Judged as" } dd { (explanation.judged_as.to_string()) }
             dt { "Differing" } dd { (explanation.differing) }
@@ -225,7 +225,7 @@ fn decisions(explanation: &Explanation) -> Markup {
             }
             dt { "Unexplained" } dd { b { (explanation.unexplained) } }
             @if explanation.unexplained > 0 {
-                dt { "Proven" } dd { (explanation.proven) " of the first thousand are beyond all roundings that there are, added up" }
+                dt { "Proven" } dd { (explanation.proven) " of the first thousand, which alone were tried: not all roundings together could explain these" }
             }
             @if explanation.undecided > 0 {
                 dt { "Undecided" } dd { (explanation.undecided) " of them have more paths than are tried" }

@@ -98,7 +98,7 @@ pub(super) enum Effort {
     DoubleDouble,
     /// 237 bits.
     Octuple,
-    /// What 237 bits leave open, too, was taken for a tie where it lies all but on one.
+    /// What 237 bits leave open, too, was taken for a tie where it lies all but on one; beyond, what they say stands.
     Rule,
 }
 

@@ -66,8 +66,10 @@ pub(crate) fn pixel_table(record: &PixelRecord, labels: Labels) -> String {
     if record.more_bits {
         let (by, open) =
             if record.most_bits { ("237 bits", " and double-double leave") } else { ("double-double", " leaves") };
-        let ties = if record.undecided { ", and one by the rules for ties" } else { "" };
-        row(&mut text, "decided by", &format!("{by}: f64{open} a decision open{ties}"));
+        row(&mut text, "decided by", &format!("{by}: f64{open} a decision open"));
+        if record.undecided {
+            row(&mut text, "open", "one is a tie, which goes by rule, or too many bounces away for 237 bits");
+        }
     }
     text += "decisions         nearest first, by the change that turns them\n";
     for margin in &record.decisions {

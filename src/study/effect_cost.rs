@@ -100,13 +100,11 @@ impl EffectCost {
             let Variant { name, compile_ms, render, ratio, same_picture, .. } = variant;
             let range = format!("{:.2} … {:.2}", render.min(), render.max());
             let picture = if *same_picture { "same" } else { "changed" };
-            let outliers = match render.outliers() {
-                0 => String::new(),
-                count => format!("  ({count} outliers)"),
-            };
+            let caution = Some(render.caution()).filter(|it| !it.is_empty());
+            let caution = caution.map_or_else(String::new, |it| format!("  ({it})"));
             let _ = writeln!(
                 text,
-                "{name:<24} {compile_ms:>7.1} ms {:>11.2} ms {range:>18} {ratio:>7.2}  {picture}{outliers}",
+                "{name:<24} {compile_ms:>7.1} ms {:>11.2} ms {range:>18} {ratio:>7.2}  {picture}{caution}",
                 render.median()
             );
         }

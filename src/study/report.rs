@@ -38,8 +38,8 @@ fn section(study: &Study) -> Markup {
         figure {
             (plots::pareto(study))
             figcaption {
-                "Dots: median of " (precision.runs) " runs; bars: fastest to slowest run. Shaded: not one pixel differs. “px” \
-                 counts the pixels that differ."
+                "Dots: median of " (precision.runs) " runs; bars: fastest to slowest run. Shaded: not one pixel differs, and \
+                 heights mean nothing; they keep the marks apart. “px” counts the pixels that differ."
             }
         }
         (table(precision))
@@ -174,8 +174,8 @@ fn findings(study: &Study) -> Vec<String> {
         all.fold((0, 0), |(outliers, runs), point| (outliers + point.wall.outliers(), runs + point.wall.runs().len()));
     if outliers > 0 {
         findings.push(format!(
-            "Caution: outliers (beyond Tukey's fences) among the {runs} runs: {outliers}; something else was using the machine. \
-             Medians are hardly moved by this."
+            "Caution: outliers (beyond Tukey's fences) among the {runs} runs: {outliers}. Something else may have used the machine: \
+             where two tables have other times for the same picture, measure again."
         ));
     }
     findings

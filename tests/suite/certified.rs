@@ -325,7 +325,12 @@ fn a_certificate_is_of_one_picture() {
     for scene in ["scene.txt", "same.txt"] {
         for device in ["cpu", "gpu"] {
             let arguments = format!("verify --device {device} a.ppm --scene {scene} --certificate a.json");
-            assert_run(path, &arguments, 0, "certificate       of this scene, these settings and this picture");
+            assert_run(
+                path,
+                &arguments,
+                0,
+                "certificate       of this scene, these settings and this picture; the rest of it is a claim",
+            );
         }
     }
     std::fs::write(path.join("moved.txt"), SCENE.replace("3 5 0 0.8", "3 5.000000000000001 0 0.8")).unwrap();

@@ -223,7 +223,11 @@ fn certificates_and_verify_know_16_bits() {
         let verify = |arguments: &str, code, message| {
             place.says(&format!("verify --device {device} --scene scene.txt {arguments}"), code, message);
         };
-        verify("a.png --certificate a.json", 0, "certificate       of this scene, these settings and this picture");
+        verify(
+            "a.png --certificate a.json",
+            0,
+            "certificate       of this scene, these settings and this picture; the rest of it is a claim",
+        );
         verify("eight.png --certificate eight.json", 0, "verdict           right");
         verify("wrong.png", 1, "wrong             1 pixel of 3072\nfirst             x 5, y 7: ");
         verify("wrong.png --certificate a.json", 1, "of something else: picture.sha256");

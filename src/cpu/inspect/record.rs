@@ -19,7 +19,7 @@ pub struct PixelRecord {
     pub more_bits: bool,
     /// whether that leaves one open, too, so that 237 bits have taken them,
     pub most_bits: bool,
-    /// and whether these leave one open, which goes by the rules for ties.
+    /// and whether these leave one open: on a tie it goes by rule, beyond what they say stands.
     pub undecided: bool,
     /// Of each kind of decision the one that the least change would turn, nearest first.
     pub decisions: Vec<Margin>,
