@@ -230,7 +230,7 @@ impl Report {
         match &self.certificate_mismatch {
             Some(mismatch) => outln!("certificate       of something else: {}", visible(mismatch)),
             None if has_certificate => {
-                outln!("certificate       of this scene, these settings and this picture; the rest of it is a claim")
+                outln!("certificate       of this scene, these settings and this picture; the rest of it is a claim");
             }
             None => {}
         }

@@ -212,3 +212,33 @@ fn decimal<T: Real, W: Wide>(x: T) -> W {
 fn as_it_is<T: Real, W: Wide>(x: T) -> W {
     W::from_f64(x.to_f64())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::Effects;
+    use crate::scene::parse;
+    use crate::settings::Settings;
+
+    /// One tie among many spheres asks for more bits of the few that its ray may meet.
+    #[test]
+    fn few_spheres_are_widened() {
+        let ball = |x: f64, y: f64, r: f64| format!("SPHERE s {x} {y} -5.7 {r} {r} {r} 1 1 1 1 0 0 0 1\n");
+        let others: String =
+            (0..5000).map(|k| ball(f64::from(k % 100) - 50.0, f64::from(k / 100) + 1.0, 0.1)).collect();
+        let text = format!(
+            "NEAR 1\nLEFT -1\nRIGHT 1\nBOTTOM -1\nTOP 1\nRES 40 40\nBACK 0 0 0\nAMBIENT 1 1 1\n{}{}{others}",
+            ball(-0.3, 0.0, 0.3),
+            ball(0.3, 0.0, 0.3)
+        );
+        let scene = parse("test", text.as_bytes()).scene.expect("it is valid");
+        let viewed = scene.viewed(&Settings::classic());
+        let reference = Reference::<f64>::new(&viewed, &Effects::of(&viewed));
+        let tally = reference.pixels(&[[20, 20]], &mut [[0; 3]]).expect("it is a pixel");
+        assert_eq!((tally.most_bits, tally.undecided), (1, 1));
+        let (double_double, octuple) = &reference.wide_worlds;
+        let made = double_double.get().map_or(0, |world| world.shapes.made());
+        assert!((2..100).contains(&made), "{made}");
+        assert_eq!(octuple.get().map(|world| world.shapes.made()), Some(made));
+    }
+}
