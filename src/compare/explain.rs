@@ -121,6 +121,15 @@ impl Explanation {
         explanation
     }
 
+    /// What the number of proven pixels is of.
+    pub(crate) fn proven_in_words(&self) -> &'static str {
+        if self.unexplained > JUDGED_AGAIN as u64 {
+            "of the first 1000, which alone were tried, beyond all roundings that there are, added up"
+        } else {
+            "of them beyond all roundings that there are, added up"
+        }
+    }
+
     /// A table for people.
     pub fn report(&self) -> String {
         use std::fmt::Write as _;
@@ -136,12 +145,7 @@ impl Explanation {
         }
         let _ = writeln!(text, "  {:>8}  unexplained", self.unexplained);
         if self.unexplained > 0 {
-            let first = if self.unexplained > JUDGED_AGAIN as u64 {
-                "of the first 1000, which alone were tried,"
-            } else {
-                "of them"
-            };
-            let _ = writeln!(text, "  {:>8}  {first} beyond all roundings that there are, added up", self.proven);
+            let _ = writeln!(text, "  {:>8}  {}", self.proven, self.proven_in_words());
         }
         if self.undecided > 0 {
             let _ = writeln!(text, "  {:>8}  of them with more paths than are tried", self.undecided);

@@ -225,7 +225,7 @@ fn decisions(explanation: &Explanation) -> Markup {
             }
             dt { "Unexplained" } dd { b { (explanation.unexplained) } }
             @if explanation.unexplained > 0 {
-                dt { "Proven" } dd { (explanation.proven) " of the first thousand, which alone were tried: not all roundings together could explain these" }
+                dt { "Proven" } dd { (explanation.proven) " " (explanation.proven_in_words()) }
             }
             @if explanation.undecided > 0 {
                 dt { "Undecided" } dd { (explanation.undecided) " of them have more paths than are tried" }

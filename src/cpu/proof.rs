@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use super::bound::Bound;
 use super::dd::Dd;
-use super::intersect::{Primary, Range, Ray};
+use super::intersect::{Primary, Range};
 use super::octuple::Octuple;
 use super::oracle::quotient;
 use super::per_sphere::PerSphere;
@@ -15,7 +15,7 @@ use super::replay::{Notes, Replay};
 use super::scene::{Glass, Material, PointLight, Shape, World};
 use super::ties::Ties;
 use super::trace::trace;
-use super::vec3::{Vec3, largest, length};
+use super::vec3::{Vec3, largest};
 use crate::camera::NEAR_T_MIN;
 use crate::decimal::Decimal;
 use crate::geometry::reciprocal_power_of_two;
@@ -74,20 +74,22 @@ impl<T: Real> Reference<T> {
     /// The decisions of a sample that `T` leaves open.
     #[cold]
     fn decide(&self, primary: &Primary<T>) -> (Replay, Effort) {
-        let world = self.wide_worlds.0.get_or_init(|| widened(&self.world));
-        let primary = in_world(world, primary);
-        let (mut bound, mut notes) = (Bound::<Dd, true>::new(world), Notes::default());
-        bound.begin(errors(&primary.ray));
-        trace(world, &primary, &mut (&mut bound, &mut notes));
-        if bound.unsure.is_none() {
-            return (notes.replay(), Effort::DoubleDouble);
+        let (double_double, octuple) = &self.wide_worlds;
+        let (decisions, are_sure) = self.decide_in(double_double, primary);
+        if are_sure {
+            return (decisions, Effort::DoubleDouble);
         }
-        let world = self.wide_worlds.1.get_or_init(|| widened(&self.world));
-        let primary = in_world(world, &primary);
-        let (mut ties, mut notes) = (Ties::new(world), Notes::default());
-        ties.bound.begin(errors(&primary.ray));
+        let (decisions, are_sure) = self.decide_in(octuple, primary);
+        (decisions, if are_sure { Effort::Octuple } else { Effort::Rule })
+    }
+
+    /// The decisions of a sample in a `W`, and whether that leaves none open.
+    fn decide_in<W: Wide>(&self, world: &OnceLock<World<W>>, primary: &Primary<T>) -> (Replay, bool) {
+        let world = world.get_or_init(|| widened(&self.world));
+        let primary = Primary { ray: world.exact.ray(primary.sample), sample: primary.sample, seen: primary.seen };
+        let (mut ties, mut notes) = (Ties::new(world, &primary.ray), Notes::default());
         trace(world, &primary, &mut (&mut ties, &mut notes));
-        (notes.replay(), if ties.bound.unsure.is_none() { Effort::Octuple } else { Effort::Rule })
+        (notes.replay(), ties.bound.unsure.is_none())
     }
 }
 
@@ -104,17 +106,6 @@ pub(super) enum Effort {
 
 /// The scene with the places of its file, in the types that decide, once one has to.
 pub(super) type WideWorlds = (OnceLock<World<Dd>>, OnceLock<World<Octuple>>);
-
-/// The ray of a sample in `world`.
-fn in_world<'a, T, W: Wide>(world: &World<W>, primary: &Primary<'a, T>) -> Primary<'a, W> {
-    Primary { ray: world.exact.ray(primary.sample), sample: primary.sample, seen: primary.seen }
-}
-
-/// How far the origin of such a ray may be off, and its direction as an angle: a quotient of counts and a sum before it.
-fn errors<W: Wide>(ray: &Ray<W>) -> [W; 2] {
-    let error = W::from_f64(4.0 * W::UNIT);
-    [error * length(ray.origin), error]
-}
 
 /// `world` with its places as the decimals of the file say. Of many spheres few are asked for.
 fn widened<T: Real, W: Wide>(world: &Arc<World<T>>) -> World<W> {
